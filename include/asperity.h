@@ -1,0 +1,381 @@
+/* asperity.h - microfacet surface appearance: the core library
+ *
+ * Read this file from top to bottom and you know the library.
+ *
+ *   1  Words          directions, slopes, units
+ *   2  Errors         what makers and parsers say
+ *   3  Slope maps     roughness, anisotropy, rotation, skew; the Ellipsoid's matrix A
+ *   4  Distributions  make one from a spec or from numbers
+ *   5  Facets         D, P22, sigma, masking, densities, sampling
+ *   6  Fresnel        dielectrics, conductors, metals by name
+ *   7  Materials      eval, pdf, sample
+ *   8  Batches        the same calls over arrays
+ *   9  float32        the same calls with the suffix f
+ *
+ * The core needs libm only. It allocates nothing, prints nothing, keeps no global state, and every
+ * function may be called from any thread. Values are plain structs: copy them freely.
+ *
+ * Evaluators cannot fail: outside its domain a function answers 0; a NaN that comes in goes out;
+ * finite unit vectors never give NaN or infinity. Makers return a status and write only on success.
+ *
+ * MIT licence. */
+#ifndef ASPERITY_H
+#define ASPERITY_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ASP_VERSION_MAJOR 0
+#define ASP_VERSION_MINOR 1
+#define ASP_VERSION_PATCH 0
+
+/* ------------------------------------------------------------------ 1  Words
+ *
+ * Right-handed local frame, +z the normal of the flat (macroscopic) surface. Directions are unit
+ * vectors that point away from the surface. `wi` is given and `wo` is sampled (Mitsuba's and RGL's
+ * habit; pbrt and dj_brdf sample wi). `m` is a facet normal, m.z > 0. The slope of a facet is
+ * p = (-m.x/m.z, -m.y/m.z). Angles in radians; D and densities in 1/sr; P22 per unit slope area. */
+
+typedef struct asp_vec3 { double x, y, z; } asp_vec3;
+typedef struct asp_rgb  { double r, g, b; } asp_rgb;      /* linear sRGB */
+typedef struct asp_vec2 { double x, y; } asp_vec2;
+
+/* ------------------------------------------------------------------ 2  Errors */
+
+typedef enum asp_status {
+    ASP_OK = 0,
+    ASP_EINVAL,    /* a value outside its range, or one that does not go with another */
+    ASP_EPARSE,    /* a spec or a text file that cannot be read */
+    ASP_EUNKNOWN,  /* a name that is not in a table */
+    ASP_EIO,       /* the operating system refused to read or write */
+    ASP_EFORMAT,   /* a file that is not what it says it is: corrupt, truncated, hostile */
+    ASP_ENOMEM     /* out of memory */
+} asp_status;
+
+/* Filled on failure, untouched on success. Owned by the caller; every function takes NULL for it.
+ * asp_error_text (asperity_data.h) makes one line of it. */
+typedef struct asp_error {
+    asp_status  status;
+    long long   position;    /* byte offset in the spec or binary file, -1 where there is none */
+    long long   line;        /* 1-based line of a text file, 0 where there is none */
+    double      value;       /* the value refused, and its allowed range; NaN where there is none */
+    double      low, high;
+    int         low_open;    /* 1: low itself is refused */
+    char        file[256];   /* file or source, "" where there is none */
+    char        name[64];    /* the parameter, column, field or word at fault */
+    char        reason[192]; /* what is wrong, in words */
+} asp_error;
+
+/* Fills err (when not NULL) with status, name and reason, and clears the rest; returns status. */
+asp_status asp_fail(asp_error *err, asp_status status, const char *name, const char *reason);
+
+/* The same for a number outside [low, high]. */
+asp_status asp_fail_range(asp_error *err, const char *name, double value,
+                          double low, int low_open, double high);
+
+/* ------------------------------------------------------------------ 3  Slope maps
+ *
+ * A distribution is a standard surface of unit roughness seen through an affine map of slopes,
+ *
+ *     p = M q + t,      M 2x2 and invertible,   t the mean slope.
+ *
+ * Only M M^T (the scatter matrix [[ax^2, rho ax ay], [rho ax ay, ay^2]]) and t matter to D; M itself
+ * decides how the unit square is laid out by the samplers. */
+
+typedef struct asp_map { double m00, m01, m10, m11, tx, ty; } asp_map;
+
+/* alpha_x, alpha_y: [1e-5, 100]. rotation turns the x axis of the roughness towards +y (a
+ * counter-clockwise turn by `rotation` radians seen from +z). mean_x, mean_y: |mean| <= 100.
+ * Returns ASP_EINVAL and names the value that is out of range. */
+asp_status asp_map_from_roughness(double alpha_x, double alpha_y, double rotation,
+                                  double mean_x, double mean_y, asp_map *out, asp_error *err);
+
+/* Correlated axes instead of a rotation: |rho| < 1. */
+asp_status asp_map_from_correlation(double alpha_x, double alpha_y, double rho,
+                                    double mean_x, double mean_y, asp_map *out, asp_error *err);
+
+/* The Ellipsoid NDF's matrix: A = diag(alpha_x, alpha_y, 1) Rx(theta_x) Ry(theta_y) Rz(theta_z)
+ * (Walter et al. 2014, eqs. 2-3). theta_x > 0 tilts the normals to +y, theta_y > 0 to -x, and
+ * theta_z turns the distribution by -theta_z. Row-major. |theta_x|, |theta_y| < pi/2. */
+asp_status asp_ellipsoid_matrix(double alpha_x, double alpha_y, double theta_x, double theta_y,
+                                double theta_z, double A[9], asp_error *err);
+
+/* The slope map of any invertible A, row-major, of either sign of det A: with S = A^T A, mean slope
+ * -(S13, S23)/S33 and scatter S[1:2,1:2]/S33 - mean mean^T. A scales out. */
+asp_status asp_map_from_matrix(const double A[9], asp_map *out, asp_error *err);
+
+/* The same from the symmetric S = A^T A, row-major; it must be positive definite. */
+asp_status asp_map_from_gram(const double S[9], asp_map *out, asp_error *err);
+
+/* Back to a matrix: A = [[M^T, 0], [-tx, -ty, 1]], so that |A n| = 1 and det A = det M. */
+void asp_map_to_matrix(const asp_map *map, double A[9]);
+
+/* The five numbers of a map: rotation in (-pi/2, pi/2] with alpha_x >= alpha_y, the form in which
+ * two maps of one distribution compare equal. */
+typedef struct asp_roughness { double alpha_x, alpha_y, rotation, mean_x, mean_y; } asp_roughness;
+asp_roughness asp_map_to_roughness(const asp_map *map);
+
+/* ------------------------------------------------------------------ 4  Distributions */
+
+typedef struct asp_model asp_model;      /* what a distribution is: see asperity_ndf.h */
+
+#define ASP_SHAPE_NUMBERS 8
+#define ASP_TABLE_NUMBERS 256
+
+/* A prepared distribution, about 2.2 KB. Read-only for callers; make it with a function below. */
+typedef struct asp_ndf {
+    const asp_model *model;
+    asp_map map;                          /* p = M q + t */
+    double  i00, i01, i10, i11;           /* the inverse of M */
+    double  inv_det;                      /* 1 / |det M| */
+    double  shape[ASP_SHAPE_NUMBERS];     /* the model's own numbers */
+    double  table[ASP_TABLE_NUMBERS];     /* what the model prepared */
+} asp_ndf;
+
+/* The models of this library in the order of `asperity list`; ends with NULL. */
+const asp_model *const *asp_models(void);
+
+/* Finds a model by name or alias in a NULL-terminated table (NULL: asp_models()). NULL if none. */
+const asp_model *asp_find_model(const asp_model *const *models, const char *name);
+
+/* Makes a distribution from a model, a slope map and the model's shape numbers in the order of its
+ * parameter table (NULL: the defaults). May spend up to 2 ms; evaluation never prepares anything. */
+asp_status asp_ndf_make(const asp_model *model, const asp_map *map, const double *shape,
+                        asp_ndf *out, asp_error *err);
+
+/* Makes a distribution from a spec, `name:key=value,key=value`. Every model takes the map's keys
+ * alpha (or alpha_x, alpha_y), rotation or rho, mean_x, mean_y, and its own. Examples:
+ *     ggx:alpha=0.3        beckmann:alpha_x=0.3,alpha_y=0.1,rotation=0.5
+ *     student_t:alpha=0.3,gamma=3.7        student_t:alpha=0.3,gamma=inf
+ *     ellipsoid:alpha_x=0.2,alpha_y=0.1,theta_x=0.3,theta_y=-0.2,theta_z=0.7
+ *     ellipsoid:a11=0.2,a12=0,...,a33=1      (the nine entries of A)
+ *     ellipsoid:s11=...,s12=...,s13=...,s22=...,s23=...,s33=...      (A^T A)
+ * models: NULL for asp_models(). On failure err->position is the byte of the spec at fault. */
+asp_status asp_ndf_parse(const asp_model *const *models, const char *spec, asp_ndf *out,
+                         asp_error *err);
+
+/* ------------------------------------------------------------------ 5  Facets */
+
+/* Which masking. Add one of the first group and one of the second. Default: 0. */
+typedef enum asp_mask {
+    ASP_MASK_CORRELATED = 0,    /* G2 = 1/(1 + Lambda_i + Lambda_o): height-correlated Smith */
+    ASP_MASK_UNCORRELATED = 1,  /* G2 = G1(i) G1(o): the Ellipsoid and STD papers */
+    ASP_MASK_V_CAVITY = 2,      /* Torrance-Sparrow's grooves; knows nothing of the distribution */
+    ASP_MASK_MIN = 0,           /* skewed surfaces: G1 = min(1, w.z/sigma), Walter eq. 6 */
+    ASP_MASK_WALL = 16          /* skewed surfaces: vertical walls close the surface; exact, no min */
+} asp_mask;
+
+/* Names: correlated (height_correlated), uncorrelated (separable), v_cavity, min, wall, and two
+ * joined by '+', as in uncorrelated+wall. ASP_EUNKNOWN on any other. */
+asp_status asp_mask_parse(const char *name, int *mask, asp_error *err);
+
+/* Density of facet normals, area of facets per unit flat area and solid angle, 1/sr. Its integral
+ * against m.z is 1. 0 for m.z <= 0. */
+double asp_D(const asp_ndf *ndf, asp_vec3 m);
+
+/* Density of slopes, D = P22 / cos^4 (STD paper eq. 5). Any finite slope. */
+double asp_P22(const asp_ndf *ndf, double p_x, double p_y);
+
+/* Projected area of the facets seen from w, per unit flat area: the integral of max(0, w.m) D(m).
+ * Any w, also below the horizon; sigma(-w) = sigma(w) - (w.z - tx w.x - ty w.y). Never negative. */
+double asp_sigma(const asp_ndf *ndf, asp_vec3 w);
+
+/* Smith's masking. G1 = w.z / (masked sigma) in [0, 1], 0 for w.z <= 0. Lambda = 1/G1 - 1, infinite
+ * at the horizon (not NaN), 0 along the normal of an unskewed surface. `mask` as above; the
+ * V-cavity form needs m, so here it is taken for m = the direction that masks least: 1. */
+double asp_G1(const asp_ndf *ndf, asp_vec3 w, int mask);
+double asp_lambda(const asp_ndf *ndf, asp_vec3 w, int mask);
+
+/* Share of the facets with normal m seen from both. 0 where either direction is below the horizon
+ * or behind the facet. */
+double asp_G2(const asp_ndf *ndf, asp_vec3 wi, asp_vec3 wo, asp_vec3 m, int mask);
+
+/* Normal sampling with density D(m) m.z, and visible normals seen from wi with density
+ * max(0, wi.m) D(m) / sigma(wi). u1, u2 in [0, 1). Both are continuous maps of (u1, u2).
+ * wi may point below the horizon as long as sigma(wi) > 0. */
+asp_vec3 asp_sample_normal(const asp_ndf *ndf, double u1, double u2);
+asp_vec3 asp_sample_visible(const asp_ndf *ndf, asp_vec3 wi, double u1, double u2);
+double   asp_pdf_normal(const asp_ndf *ndf, asp_vec3 m);
+double   asp_pdf_visible(const asp_ndf *ndf, asp_vec3 wi, asp_vec3 m);
+
+/* Mean of the slopes, and the unit normal of the mean plane, (-mean, 1) normalised. */
+asp_vec2 asp_mean_slope(const asp_ndf *ndf);
+asp_vec3 asp_mean_normal(const asp_ndf *ndf);
+
+/* ------------------------------------------------------------------ 6  Fresnel
+ *
+ * c is the cosine between direction and facet normal, clamped to [0, 1]. Unpolarised reflectance. */
+
+/* eta = interior/exterior > 0. Total internal reflection gives 1; eta = 1 gives 0. */
+double asp_fresnel_dielectric(double c, double eta);
+/* Complex index eta + i k relative to the exterior, k >= 0. One division, no complex numbers. */
+double asp_fresnel_conductor(double c, double eta, double k);
+/* f0 + (1 - f0)(1 - c)^5 (Schlick 1994). */
+double asp_fresnel_schlick(double c, double f0);
+/* Schlick's with the value at 82 degrees tinted: f82 = tint * schlick(c82), c82 = 1/7 (Kutz et al.
+ * 2021). tint = 1 is Schlick's. Result clamped to [0, 1]. */
+double asp_fresnel_f82(double c, double f0, double tint);
+
+/* A metal as the linear sRGB triple whose conductor Fresnel term best follows the spectral one
+ * under D65. */
+typedef struct asp_metal { const char *name, *source; asp_rgb eta, k, f0; } asp_metal;
+const asp_metal *asp_metals(size_t *count);
+const asp_metal *asp_find_metal(const char *name);        /* "Au", "Ag", ...; NULL if none */
+
+/* ------------------------------------------------------------------ 7  Materials
+ *
+ * A scattering model over a distribution. Spec grammar: `model:key=value,...` where a value may be
+ * a spec in parentheses, and a colour is one number or r/g/b:
+ *     conductor:metal=Au,ndf=(student_t:alpha=0.3,gamma=3),mask=uncorrelated
+ *     conductor:eta=0.2/0.9/1.5,k=3.9/2.4/1.9,ndf=(ggx:alpha=0.1)      conductor:f0=0.9/0.6/0.3,tint=0.9
+ *     lambert_specular:diffuse=0.2/0.1/0.05,specular=1,eta=1.5,ndf=(ggx:alpha=0.2) */
+
+typedef struct asp_bsdf asp_bsdf;        /* what a scattering model is: see asperity_ndf.h */
+
+typedef struct asp_material {
+    const asp_bsdf *model;
+    int     mask;                         /* asp_mask */
+    int     fresnel;                      /* which Fresnel term the numbers below are for */
+    asp_rgb a, b, c, d;                   /* the model's colours; see its record */
+    asp_ndf ndf;
+} asp_material;
+
+const asp_bsdf *const *asp_bsdfs(void);   /* ends with NULL */
+asp_status asp_material_parse(const asp_model *const *models, const char *spec, asp_material *out,
+                              asp_error *err);
+
+/* A perfectly specular microsurface (F = 1) of a distribution: albedo 1 minus what masking loses. */
+asp_material asp_mirror(const asp_ndf *ndf, int mask);
+
+/* A conductor: eta + i k per channel. */
+asp_material asp_conductor(const asp_ndf *ndf, asp_rgb eta, asp_rgb k, int mask);
+
+/* A diffuse base under a specular lobe of a dielectric of index eta, scaled by `specular`; the form
+ * fitted in the STD paper: f = diffuse/pi + specular F D G / (4 cos cos). */
+asp_material asp_lambert_specular(const asp_ndf *ndf, asp_rgb diffuse, asp_rgb specular, double eta,
+                                  int mask);
+
+typedef struct asp_bsdf_sample {
+    asp_vec3 wo;
+    double   pdf;                         /* per solid angle of wo */
+    asp_rgb  weight;                      /* f cos(theta_o) / pdf; 0 where wo is below the horizon */
+} asp_bsdf_sample;
+
+/* f, f cos(theta_o) and the density of sample's wo. 0 for wi.z <= 0; f is 0 for wo.z <= 0, the
+ * density need not be (a facet can send light down). */
+asp_rgb asp_eval(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
+asp_rgb asp_eval_cos(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
+double  asp_pdf(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
+asp_bsdf_sample asp_sample(const asp_material *mat, asp_vec3 wi, double u1, double u2);
+
+/* ------------------------------------------------------------------ 8  Batches
+ *
+ * n elements, structure of arrays. Outputs may be inputs (in place); otherwise arrays must not
+ * overlap. Element i is bit for bit what the single call gives. */
+
+typedef struct asp_vec3s  { double *x, *y, *z; } asp_vec3s;              /* written */
+typedef struct asp_cvec3s { const double *x, *y, *z; } asp_cvec3s;      /* read */
+typedef struct asp_rgbs  { double *r, *g, *b; } asp_rgbs;
+
+void asp_D_n(const asp_ndf *ndf, size_t n, asp_cvec3s m, double *out);
+void asp_P22_n(const asp_ndf *ndf, size_t n, const double *p_x, const double *p_y, double *out);
+void asp_sigma_n(const asp_ndf *ndf, size_t n, asp_cvec3s w, double *out);
+void asp_G1_n(const asp_ndf *ndf, size_t n, asp_cvec3s w, int mask, double *out);
+void asp_lambda_n(const asp_ndf *ndf, size_t n, asp_cvec3s w, int mask, double *out);
+void asp_G2_n(const asp_ndf *ndf, size_t n, asp_cvec3s wi, asp_cvec3s wo, asp_cvec3s m, int mask,
+              double *out);
+void asp_sample_normal_n(const asp_ndf *ndf, size_t n, const double *u1, const double *u2,
+                         asp_vec3s m);
+void asp_sample_visible_n(const asp_ndf *ndf, size_t n, asp_cvec3s wi, const double *u1,
+                          const double *u2, asp_vec3s m);
+void asp_pdf_normal_n(const asp_ndf *ndf, size_t n, asp_cvec3s m, double *out);
+void asp_pdf_visible_n(const asp_ndf *ndf, size_t n, asp_cvec3s wi, asp_cvec3s m, double *out);
+void asp_eval_n(const asp_material *mat, size_t n, asp_cvec3s wi, asp_cvec3s wo, asp_rgbs out);
+void asp_eval_cos_n(const asp_material *mat, size_t n, asp_cvec3s wi, asp_cvec3s wo, asp_rgbs out);
+void asp_pdf_n(const asp_material *mat, size_t n, asp_cvec3s wi, asp_cvec3s wo, double *out);
+void asp_sample_n(const asp_material *mat, size_t n, asp_cvec3s wi, const double *u1,
+                  const double *u2, asp_vec3s wo, double *pdf, asp_rgbs weight);
+
+/* ------------------------------------------------------------------ 9  float32
+ *
+ * Prepare in float64, narrow once, evaluate in float32 from the same text. */
+
+typedef struct asp_vec3f { float x, y, z; } asp_vec3f;
+typedef struct asp_rgbf  { float r, g, b; } asp_rgbf;
+typedef struct asp_vec2f { float x, y; } asp_vec2f;
+typedef struct asp_mapf  { float m00, m01, m10, m11, tx, ty; } asp_mapf;
+typedef struct asp_vec3sf { float *x, *y, *z; } asp_vec3sf;
+typedef struct asp_cvec3sf { const float *x, *y, *z; } asp_cvec3sf;
+typedef struct asp_rgbsf  { float *r, *g, *b; } asp_rgbsf;
+
+typedef struct asp_ndff {
+    const asp_model *model;
+    asp_mapf map;
+    float i00, i01, i10, i11;
+    float inv_det;
+    float shape[ASP_SHAPE_NUMBERS];
+    float table[ASP_TABLE_NUMBERS];
+} asp_ndff;
+
+typedef struct asp_materialf {
+    const asp_bsdf *model;
+    int      mask;
+    int      fresnel;
+    asp_rgbf a, b, c, d;
+    asp_ndff ndf;
+} asp_materialf;
+
+typedef struct asp_bsdf_samplef { asp_vec3f wo; float pdf; asp_rgbf weight; } asp_bsdf_samplef;
+
+asp_ndff      asp_ndf_narrow(const asp_ndf *ndf);
+asp_materialf asp_material_narrow(const asp_material *mat);
+
+float asp_Df(const asp_ndff *ndf, asp_vec3f m);
+float asp_P22f(const asp_ndff *ndf, float p_x, float p_y);
+float asp_sigmaf(const asp_ndff *ndf, asp_vec3f w);
+float asp_G1f(const asp_ndff *ndf, asp_vec3f w, int mask);
+float asp_lambdaf(const asp_ndff *ndf, asp_vec3f w, int mask);
+float asp_G2f(const asp_ndff *ndf, asp_vec3f wi, asp_vec3f wo, asp_vec3f m, int mask);
+asp_vec3f asp_sample_normalf(const asp_ndff *ndf, float u1, float u2);
+asp_vec3f asp_sample_visiblef(const asp_ndff *ndf, asp_vec3f wi, float u1, float u2);
+float asp_pdf_normalf(const asp_ndff *ndf, asp_vec3f m);
+float asp_pdf_visiblef(const asp_ndff *ndf, asp_vec3f wi, asp_vec3f m);
+asp_vec2f asp_mean_slopef(const asp_ndff *ndf);
+asp_vec3f asp_mean_normalf(const asp_ndff *ndf);
+float asp_fresnel_dielectricf(float c, float eta);
+float asp_fresnel_conductorf(float c, float eta, float k);
+float asp_fresnel_schlickf(float c, float f0);
+float asp_fresnel_f82f(float c, float f0, float tint);
+asp_rgbf asp_evalf(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo);
+asp_rgbf asp_eval_cosf(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo);
+float    asp_pdff(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo);
+asp_bsdf_samplef asp_samplef(const asp_materialf *mat, asp_vec3f wi, float u1, float u2);
+
+void asp_D_nf(const asp_ndff *ndf, size_t n, asp_cvec3sf m, float *out);
+void asp_P22_nf(const asp_ndff *ndf, size_t n, const float *p_x, const float *p_y, float *out);
+void asp_sigma_nf(const asp_ndff *ndf, size_t n, asp_cvec3sf w, float *out);
+void asp_G1_nf(const asp_ndff *ndf, size_t n, asp_cvec3sf w, int mask, float *out);
+void asp_lambda_nf(const asp_ndff *ndf, size_t n, asp_cvec3sf w, int mask, float *out);
+void asp_G2_nf(const asp_ndff *ndf, size_t n, asp_cvec3sf wi, asp_cvec3sf wo, asp_cvec3sf m, int mask,
+               float *out);
+void asp_sample_normal_nf(const asp_ndff *ndf, size_t n, const float *u1, const float *u2,
+                          asp_vec3sf m);
+void asp_sample_visible_nf(const asp_ndff *ndf, size_t n, asp_cvec3sf wi, const float *u1,
+                           const float *u2, asp_vec3sf m);
+void asp_pdf_normal_nf(const asp_ndff *ndf, size_t n, asp_cvec3sf m, float *out);
+void asp_pdf_visible_nf(const asp_ndff *ndf, size_t n, asp_cvec3sf wi, asp_cvec3sf m, float *out);
+void asp_eval_nf(const asp_materialf *mat, size_t n, asp_cvec3sf wi, asp_cvec3sf wo, asp_rgbsf out);
+void asp_eval_cos_nf(const asp_materialf *mat, size_t n, asp_cvec3sf wi, asp_cvec3sf wo,
+                     asp_rgbsf out);
+void asp_pdf_nf(const asp_materialf *mat, size_t n, asp_cvec3sf wi, asp_cvec3sf wo, float *out);
+void asp_sample_nf(const asp_materialf *mat, size_t n, asp_cvec3sf wi, const float *u1,
+                   const float *u2, asp_vec3sf wo, float *pdf, asp_rgbsf weight);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
