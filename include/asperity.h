@@ -53,7 +53,8 @@ typedef enum asp_status {
     ASP_EUNKNOWN,  /* a name that is not in a table */
     ASP_EIO,       /* the operating system refused to read or write */
     ASP_EFORMAT,   /* a file that is not what it says it is: corrupt, truncated, hostile */
-    ASP_ENOMEM     /* out of memory */
+    ASP_ENOMEM,    /* out of memory */
+    ASP_ECANCELLED /* stopped by the progress function of the caller */
 } asp_status;
 
 /* Filled on failure, untouched on success. Owned by the caller; every function takes NULL for it.
