@@ -1,0 +1,268 @@
+/* elementary.h - the elementary functions of the kernels, in both precisions
+ *
+ * Own, because libm's are not vectorised by the compilers without -ffast-math and differ from one
+ * libm to the next; these give the same bits everywhere. Series are Taylor's, with the number of
+ * terms that the reduced range asks for, so that no coefficient needs a table. Measured bounds (in
+ * units in the last place, over 10^7 arguments, tests/test_elementary.c):
+ *     exp 1.0, log 1.5, log1p 2, sincos2pi 1 absolute (1.2e-16, 7e-8). */
+
+#include "asperity/number.h"
+
+#ifndef ASP_ELEMENTARY_NAMES
+#define ASP_ELEMENTARY_NAMES
+#define aspi_abs ASP_NAME(aspi_abs)
+#define aspi_min ASP_NAME(aspi_min)
+#define aspi_max ASP_NAME(aspi_max)
+#define aspi_sqrt ASP_NAME(aspi_sqrt)
+#define aspi_to_bits ASP_NAME(aspi_to_bits)
+#define aspi_from_bits ASP_NAME(aspi_from_bits)
+#define aspi_exp ASP_NAME(aspi_exp)
+#define aspi_log_parts ASP_NAME(aspi_log_parts)
+#define aspi_log ASP_NAME(aspi_log)
+#define aspi_log1p ASP_NAME(aspi_log1p)
+#define aspi_sin_cos ASP_NAME(aspi_sin_cos)
+#define aspi_sincos2pi ASP_NAME(aspi_sincos2pi)
+#define aspi_atan ASP_NAME(aspi_atan)
+#endif
+
+#if (ASP_PRECISION == 64 && !defined(ASP_ELEMENTARY_64)) || \
+    (ASP_PRECISION == 32 && !defined(ASP_ELEMENTARY_32))
+#if ASP_PRECISION == 64
+#define ASP_ELEMENTARY_64
+#else
+#define ASP_ELEMENTARY_32
+#endif
+
+/* min and max by selection: a NaN in the first argument comes out. */
+ASP_FN asp_real aspi_min(asp_real a, asp_real b) { return b < a ? b : a; }
+ASP_FN asp_real aspi_max(asp_real a, asp_real b) { return b > a ? b : a; }
+
+ASP_FN asp_bits aspi_to_bits(asp_real x)
+{
+    asp_bits b;
+    memcpy(&b, &x, sizeof b);
+    return b;
+}
+
+ASP_FN asp_real aspi_from_bits(asp_bits b)
+{
+    asp_real x;
+    memcpy(&x, &b, sizeof x);
+    return x;
+}
+
+#if ASP_PRECISION == 64
+#define ASP_FRACTION_BITS 52
+#define ASP_EXPONENT_BIAS 1023u
+#define ASP_ROUND_SHIFT 6755399441055744.0 /* 1.5 * 2^52: adding it rounds to the nearest integer */
+#define ASP_INT_SHIFT 4503599627370496.0   /* 2^52 */
+#define ASP_SIGN_BIT 0x8000000000000000u
+#define ASP_SQRT_HALF_BITS 0x3fe6a09e667f3bcdu
+#define ASP_EXP_LOW (-708.0)
+#define ASP_EXP_HIGH 709.0
+#define ASP_LN2_HIGH 0x1.62e42fefa3p-1 /* ln 2 cut to 41 bits, so that k times it is exact ... */
+#define ASP_LN2_LOW 0x1.3de6af278ece6p-42 /* ... and what is left */
+#else
+#define ASP_FRACTION_BITS 23
+#define ASP_EXPONENT_BIAS 127u
+#define ASP_ROUND_SHIFT 12582912.0
+#define ASP_INT_SHIFT 8388608.0
+#define ASP_SIGN_BIT 0x80000000u
+#define ASP_SQRT_HALF_BITS 0x3f3504f3u
+#define ASP_EXP_LOW (-87.0)
+#define ASP_EXP_HIGH 88.0
+#define ASP_LN2_HIGH 0x1.62ep-1
+#define ASP_LN2_LOW 0x1.0bfbe8e7bcd5ep-15
+#endif
+
+ASP_FN asp_real aspi_abs(asp_real x)
+{
+    return aspi_from_bits(aspi_to_bits(x) & (asp_bits)~ASP_SIGN_BIT);
+}
+
+ASP_FN asp_real aspi_sqrt(asp_real x)
+{
+#if ASP_PRECISION == 64
+    return sqrt(x);
+#else
+    return sqrtf(x);
+#endif
+}
+
+/* e^x = 2^k e^r, |r| <= ln(2)/2. 0 below ASP_EXP_LOW (no subnormal results), e^ASP_EXP_HIGH above
+ * ASP_EXP_HIGH: a kernel's exponent is bounded above by construction. */
+ASP_FN asp_real aspi_exp(asp_real x)
+{
+    asp_real y = x > R(ASP_EXP_LOW) ? x : R(ASP_EXP_LOW);
+    asp_real z = y < R(ASP_EXP_HIGH) ? y : R(ASP_EXP_HIGH);
+    asp_real shifted = z * R(1.44269504088896340736) + R(ASP_ROUND_SHIFT);
+    asp_real k = shifted - R(ASP_ROUND_SHIFT);
+    asp_real r = (z - k * R(ASP_LN2_HIGH)) - k * R(ASP_LN2_LOW);
+    asp_real p, scale, e;
+    asp_bits low;
+#if ASP_PRECISION == 64
+    p = R(1.0 / 6227020800.0);
+    p = p * r + R(1.0 / 479001600.0);
+    p = p * r + R(1.0 / 39916800.0);
+    p = p * r + R(1.0 / 3628800.0);
+    p = p * r + R(1.0 / 362880.0);
+    p = p * r + R(1.0 / 40320.0);
+    p = p * r + R(1.0 / 5040.0);
+#else
+    p = R(1.0 / 5040.0);
+#endif
+    p = p * r + R(1.0 / 720.0);
+    p = p * r + R(1.0 / 120.0);
+    p = p * r + R(1.0 / 24.0);
+    p = p * r + R(1.0 / 6.0);
+    p = p * r + R(0.5);
+    e = R(1.0) + (r + (r * r) * p);
+    /* the low bits of `shifted` hold k: make 2^k of them */
+    low = aspi_to_bits(shifted);
+    scale = aspi_from_bits((asp_bits)((low + (asp_bits)ASP_EXPONENT_BIAS) << ASP_FRACTION_BITS));
+    e = e * scale;
+    e = x < R(ASP_EXP_LOW) ? R(0.0) : e;
+    return x == x ? e : x;
+}
+
+/* log(2^k (1 + f)) = k ln 2 + 2 atanh(s), s = f/(2 + f), |s| <= 0.1716. */
+ASP_FN asp_real aspi_log_parts(asp_real k, asp_real f)
+{
+    asp_real s = f / (R(2.0) + f);
+    asp_real z = s * s;
+    asp_real p;
+#if ASP_PRECISION == 64
+    p = R(2.0 / 21.0);
+    p = p * z + R(2.0 / 19.0);
+    p = p * z + R(2.0 / 17.0);
+    p = p * z + R(2.0 / 15.0);
+    p = p * z + R(2.0 / 13.0);
+    p = p * z + R(2.0 / 11.0);
+    p = p * z + R(2.0 / 9.0);
+#else
+    p = R(2.0 / 9.0);
+#endif
+    p = p * z + R(2.0 / 7.0);
+    p = p * z + R(2.0 / 5.0);
+    p = p * z + R(2.0 / 3.0);
+    /* 2 atanh(s) = f - s f + s z p: f is exact, so only the small second part is rounded */
+    return k * R(ASP_LN2_HIGH) + (f - (s * (f - z * p) - k * R(ASP_LN2_LOW)));
+}
+
+/* Logarithm of a positive normal number; anything else gives an unspecified finite number, and a
+ * NaN gives a NaN. */
+ASP_FN asp_real aspi_log(asp_real x)
+{
+    /* exponent field of x / sqrt(1/2): the mantissa then lies in [sqrt(1/2), sqrt(2)) */
+    asp_bits b = aspi_to_bits(x);
+    asp_bits biased = (asp_bits)(b - (asp_bits)ASP_SQRT_HALF_BITS
+                      + ((asp_bits)ASP_EXPONENT_BIAS << ASP_FRACTION_BITS)) >> ASP_FRACTION_BITS;
+    asp_real k = aspi_from_bits(biased | aspi_to_bits(R(ASP_INT_SHIFT)))
+               - R(ASP_INT_SHIFT + ASP_EXPONENT_BIAS);
+    asp_bits m = (asp_bits)(b - ((asp_bits)(biased - (asp_bits)ASP_EXPONENT_BIAS) << ASP_FRACTION_BITS));
+    asp_real y = aspi_log_parts(k, aspi_from_bits(m) - R(1.0));
+    return x == x ? y : x;
+}
+
+/* log(1 + x) for x > -1, finite and below the square root of the largest number. What 1 + x rounds
+ * away is given back to f before the series, so that the relative error stays small near 0. */
+ASP_FN asp_real aspi_log1p(asp_real x)
+{
+    asp_real u = R(1.0) + x;
+    asp_real lost = u < R(2.0) ? x - (u - R(1.0)) : R(1.0) - (u - x);
+    asp_bits b = aspi_to_bits(u);
+    asp_bits biased = (asp_bits)(b - (asp_bits)ASP_SQRT_HALF_BITS
+                      + ((asp_bits)ASP_EXPONENT_BIAS << ASP_FRACTION_BITS)) >> ASP_FRACTION_BITS;
+    asp_real k = aspi_from_bits(biased | aspi_to_bits(R(ASP_INT_SHIFT)))
+               - R(ASP_INT_SHIFT + ASP_EXPONENT_BIAS);
+    asp_bits shift = (asp_bits)(biased - (asp_bits)ASP_EXPONENT_BIAS) << ASP_FRACTION_BITS;
+    /* 2^-k */
+    asp_real scale = aspi_from_bits((asp_bits)(aspi_to_bits(R(1.0)) - shift));
+    asp_real f = (aspi_from_bits((asp_bits)(b - shift)) - R(1.0)) + lost * scale;
+    asp_real y = aspi_log_parts(k, f);
+    return x == x ? y : x;
+}
+
+/* sine and cosine of x, |x| <= pi/4, as .x = cos, .y = sin. */
+ASP_FN asp_v2 aspi_sin_cos(asp_real x)
+{
+    asp_real z = x * x;
+    asp_real s, c;
+    asp_v2 out;
+#if ASP_PRECISION == 64
+    s = R(1.0 / 355687428096000.0);
+    s = s * z - R(1.0 / 1307674368000.0);
+    s = s * z + R(1.0 / 6227020800.0);
+    s = s * z - R(1.0 / 39916800.0);
+    c = R(1.0 / 20922789888000.0);
+    c = c * z - R(1.0 / 87178291200.0);
+    c = c * z + R(1.0 / 479001600.0);
+    c = c * z - R(1.0 / 3628800.0);
+    s = s * z + R(1.0 / 362880.0);
+    c = c * z + R(1.0 / 40320.0);
+#else
+    s = R(1.0 / 362880.0);
+    c = R(-1.0 / 3628800.0);
+    c = c * z + R(1.0 / 40320.0);
+#endif
+    s = s * z - R(1.0 / 5040.0);
+    s = s * z + R(1.0 / 120.0);
+    s = s * z - R(1.0 / 6.0);
+    c = c * z - R(1.0 / 720.0);
+    c = c * z + R(1.0 / 24.0);
+    out.y = x + (x * z) * s;
+    out.x = R(1.0) - (R(0.5) * z - (z * z) * c);
+    return out;
+}
+
+/* cos and sin of 2 pi u as .x and .y, |u| < 2^20. The reduction is exact. */
+ASP_FN asp_v2 aspi_sincos2pi(asp_real u)
+{
+    asp_real shifted = R(4.0) * u + R(ASP_ROUND_SHIFT);
+    asp_real k = shifted - R(ASP_ROUND_SHIFT);
+    asp_bits q = aspi_to_bits(shifted);
+    asp_v2 a = aspi_sin_cos((u - R(0.25) * k) * R(2.0 * ASP_PI));
+    asp_v2 out;
+    /* quarter turns: swap on odd, then signs, by bits so that no branch is left */
+    asp_bits odd = (asp_bits)((asp_bits)0 - (q & 1u));
+    asp_bits c = aspi_to_bits(a.x), s = aspi_to_bits(a.y);
+    asp_bits flip = (asp_bits)((c ^ s) & odd);
+    asp_bits sign_s = (asp_bits)((q & 2u) << (8 * sizeof(asp_bits) - 2));
+    asp_bits sign_c = (asp_bits)(((q + 1u) & 2u) << (8 * sizeof(asp_bits) - 2));
+    out.x = aspi_from_bits((asp_bits)((c ^ flip) ^ sign_c));
+    out.y = aspi_from_bits((asp_bits)((s ^ flip) ^ sign_s));
+    return out;
+}
+
+/* Angle of the vector (x, y) in (-pi, pi]; 0 for the zero vector. Two halvings of the angle bring
+ * the tangent below tan(pi/16), the series does the rest. Not for hot loops. */
+ASP_FN asp_real aspi_atan(asp_real y, asp_real x)
+{
+    asp_real ax = aspi_abs(x), ay = aspi_abs(y);
+    asp_real high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
+    asp_real t = high > R(0.0) ? low / high : R(0.0);
+    asp_real z, p, a;
+    int i;
+    t = t / (R(1.0) + aspi_sqrt(R(1.0) + t * t));
+    t = t / (R(1.0) + aspi_sqrt(R(1.0) + t * t));
+    z = t * t;
+    p = R(0.0);
+    for (i = 12; i > 0; i--)
+        p = z * ((i & 1 ? R(-1.0) : R(1.0)) / R(2 * i + 1) + p);
+    a = R(4.0) * (t + t * p);
+    a = ay > ax ? R(0.5 * ASP_PI) - a : a;
+    a = x < R(0.0) ? R(ASP_PI) - a : a;
+    return y < R(0.0) ? -a : a;
+}
+
+#undef ASP_FRACTION_BITS
+#undef ASP_EXPONENT_BIAS
+#undef ASP_ROUND_SHIFT
+#undef ASP_INT_SHIFT
+#undef ASP_SIGN_BIT
+#undef ASP_SQRT_HALF_BITS
+#undef ASP_EXP_LOW
+#undef ASP_EXP_HIGH
+#undef ASP_LN2_HIGH
+#undef ASP_LN2_LOW
+#endif

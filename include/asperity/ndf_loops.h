@@ -1,0 +1,52 @@
+/* ndf_loops.h - the four formulas of a distribution as loops over blocks
+ *
+ * Read once per precision, after the formulas. Nothing here knows which distribution it serves. */
+
+ASP_CLONES static void ndf_density_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT r2,
+                                     const asp_real *ASP_RESTRICT z2, asp_real *ASP_RESTRICT out)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        out[i] = ndf_density(k, r2[i], z2[i]);
+}
+
+ASP_CLONES static void ndf_sigma_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT w,
+                                   const asp_real *ASP_RESTRICT s2, asp_real *ASP_RESTRICT out)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        out[i] = ndf_sigma(k, w[i], s2[i]);
+}
+
+ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT vx,
+                                     const asp_real *ASP_RESTRICT vy,
+                                     const asp_real *ASP_RESTRICT vz,
+                                     const asp_real *ASP_RESTRICT u1,
+                                     const asp_real *ASP_RESTRICT u2, asp_real *ASP_RESTRICT mx,
+                                     asp_real *ASP_RESTRICT my, asp_real *ASP_RESTRICT mz)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_v3 v, m;
+        v.x = vx[i];
+        v.y = vy[i];
+        v.z = vz[i];
+        m = ndf_visible(k, v, u1[i], u2[i]);
+        mx[i] = m.x;
+        my[i] = m.y;
+        mz[i] = m.z;
+    }
+}
+
+ASP_CLONES static void ndf_normal_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT u1,
+                                    const asp_real *ASP_RESTRICT u2, asp_real *ASP_RESTRICT mx,
+                                    asp_real *ASP_RESTRICT my, asp_real *ASP_RESTRICT mz)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_v3 m = ndf_normal(k, u1[i], u2[i]);
+        mx[i] = m.x;
+        my[i] = m.y;
+        mz[i] = m.z;
+    }
+}

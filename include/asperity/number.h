@@ -1,0 +1,89 @@
+/* number.h - what a number is
+ *
+ * The kernels are one text, read once per precision. Before each reading define ASP_PRECISION as 64
+ * or 32; this file then says what asp_real, R(1.5) and the kernels' names are. It has no include
+ * guard: it is made to be read again.
+ *
+ * A kernel is straight-line scalar code: values in, values out, no libm but the square root (which
+ * IEEE 754 rounds correctly), selections by ?: on values already computed. The compiler vectorises
+ * the loops around it, and every compiler and instruction set gives the same bits, provided that it
+ * is told neither to reassociate nor to contract (-ffp-contract=off). */
+
+#ifndef ASP_NUMBER_ONCE
+#define ASP_NUMBER_ONCE
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#if defined(__CUDACC__) || defined(__CUDA__)
+#define ASP_FN static __host__ __device__ inline
+#elif defined(__GNUC__)
+#define ASP_FN static inline __attribute__((always_inline, unused))
+#else
+#define ASP_FN static inline
+#endif
+
+/* A loop over elements, compiled once per instruction set and chosen when the program is loaded. */
+#if !defined(ASP_NO_CLONES) && defined(__x86_64__) && defined(__gnu_linux__) && defined(__ELF__) && \
+    !defined(__CUDACC__) && !defined(__CUDA__) && \
+    (defined(__clang__) ? __clang_major__ >= 14 : defined(__GNUC__) && __GNUC__ >= 6)
+#define ASP_CLONES __attribute__((target_clones("default", "avx2", "avx512f")))
+#else
+#define ASP_CLONES
+#endif
+
+#if defined(__GNUC__) || defined(__cplusplus)
+#define ASP_RESTRICT __restrict
+#else
+#define ASP_RESTRICT restrict
+#endif
+
+#define ASP_PASTE_(a, b) a##b
+#define ASP_PASTE(a, b) ASP_PASTE_(a, b)
+/* A kernel's name in this precision. */
+#define ASP_NAME(x) ASP_PASTE(x, ASP_SUFFIX)
+/* A name that belongs to the distribution whose file defines ASP_NDF, as in
+ * #define helper ASP_NDF_NAME(_helper). */
+#define ASP_NDF_NAME(x) ASP_NAME(ASP_PASTE(ASP_NDF, x))
+
+#define ndf_density ASP_NDF_NAME(_density)
+#define ndf_sigma ASP_NDF_NAME(_sigma)
+#define ndf_visible ASP_NDF_NAME(_visible)
+#define ndf_normal ASP_NDF_NAME(_normal)
+#define ndf_density_n ASP_NDF_NAME(_density_n)
+#define ndf_sigma_n ASP_NDF_NAME(_sigma_n)
+#define ndf_visible_n ASP_NDF_NAME(_visible_n)
+#define ndf_normal_n ASP_NDF_NAME(_normal_n)
+
+#define ASP_PI 3.14159265358979323846
+#endif
+
+#undef ASP_SUFFIX
+#undef asp_real
+#undef asp_bits
+#undef R
+#undef asp_v3
+#undef asp_v2
+#undef asp_c3
+#undef asp_shape
+#if ASP_PRECISION == 64
+#define ASP_SUFFIX _64
+#define asp_real double
+#define asp_bits uint64_t
+#define asp_v3 asp_vec3
+#define asp_v2 asp_vec2
+#define asp_c3 asp_rgb
+#define asp_shape asp_ndf
+#elif ASP_PRECISION == 32
+#define ASP_SUFFIX _32
+#define asp_real float
+#define asp_bits uint32_t
+#define asp_v3 asp_vec3f
+#define asp_v2 asp_vec2f
+#define asp_c3 asp_rgbf
+#define asp_shape asp_ndff
+#else
+#error "define ASP_PRECISION as 64 or 32"
+#endif
+#define R(x) ((asp_real)(x))

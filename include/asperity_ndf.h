@@ -1,0 +1,126 @@
+/* asperity_ndf.h - write a distribution or a scattering model of your own
+ *
+ * A distribution is one file. It reads itself twice, once per precision, and ends in its record;
+ * docs/new-distribution.md is the recipe, src/ndf/ggx.c the shortest example:
+ *
+ *     #ifndef ASP_PRECISION
+ *     #include "asperity_ndf.h"
+ *     #define ASP_NDF toy
+ *     (its parameter table and, if it prepares anything, its prepare function)
+ *     #define ASP_PRECISION 64
+ *     #include "toy.c"
+ *     #undef ASP_PRECISION
+ *     #define ASP_PRECISION 32
+ *     #include "toy.c"
+ *     #undef ASP_PRECISION
+ *     ASP_RECORD asp_model asp_model_toy = { "toy", ..., ASP_NDF_OPS(toy) };
+ *     #undef ASP_NDF
+ *     #else
+ *     #include "asperity/elementary.h"
+ *     (four formulas of the standard surface: ndf_density, ndf_sigma, ndf_visible, ndf_normal)
+ *     #include "asperity/ndf_loops.h"
+ *     #endif
+ *
+ * The standard surface is radially symmetric in slopes and has unit roughness. Its four formulas
+ * take homogeneous arguments, so that nothing is normalised twice and no cosine divides:
+ *
+ *   asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
+ *       density of normals of the vector (x, y, z), r2 = x^2 + y^2 >= 0, z2 = z^2 > 0:
+ *       P22(r2/z2) / z2^2, homogeneous of degree -4 in the vector.
+ *   asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
+ *       projected area seen from the vector with height w (of either sign) and horizontal length
+ *       s, s2 = s^2; homogeneous of degree 1. sigma(w) - sigma(-w) = w. s2 = 0 gives max(w, 0).
+ *   asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+ *       a visible normal seen from v (any length, v.z of either sign), any length, z >= 0; its
+ *       density over normals is max(0, v.m) D(m) / sigma(v). Continuous in (u1, u2) if it can be.
+ *   asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
+ *       a normal of any length with density D(m) m.z.
+ *
+ * k->shape[] and k->table[] hold what `prepare` wrote. Formulas are straight-line: no libm calls
+ * (use asperity/elementary.h), no early returns, selections by ?:, loops of constant length only;
+ * then the compiler vectorises the loops that ndf_loops.h wraps around them. */
+#ifndef ASPERITY_NDF_H
+#define ASPERITY_NDF_H
+
+#include "asperity.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A number that the user sets. `low` itself is refused when low_open is 1. */
+typedef struct asp_param {
+    const char *name;
+    double low;
+    int    low_open;
+    double high;          /* may be INFINITY, and infinity is then allowed */
+    double initial;       /* the default */
+    const char *what;     /* a line for `asperity list` */
+} asp_param;
+
+/* The formulas in one precision: single, and over a block of n elements that do not overlap. */
+typedef struct asp_ndf_ops {
+    double (*density)(const asp_ndf *k, double r2, double z2);
+    double (*sigma)(const asp_ndf *k, double w, double s2);
+    asp_vec3 (*visible)(const asp_ndf *k, asp_vec3 v, double u1, double u2);
+    asp_vec3 (*normal)(const asp_ndf *k, double u1, double u2);
+    void (*density_n)(const asp_ndf *k, size_t n, const double *r2, const double *z2, double *out);
+    void (*sigma_n)(const asp_ndf *k, size_t n, const double *w, const double *s2, double *out);
+    void (*visible_n)(const asp_ndf *k, size_t n, const double *vx, const double *vy,
+                      const double *vz, const double *u1, const double *u2, double *mx, double *my,
+                      double *mz);
+    void (*normal_n)(const asp_ndf *k, size_t n, const double *u1, const double *u2,
+                     double *mx, double *my, double *mz);
+} asp_ndf_ops;
+
+typedef struct asp_ndf_opsf {
+    float (*density)(const asp_ndff *k, float r2, float z2);
+    float (*sigma)(const asp_ndff *k, float w, float s2);
+    asp_vec3f (*visible)(const asp_ndff *k, asp_vec3f v, float u1, float u2);
+    asp_vec3f (*normal)(const asp_ndff *k, float u1, float u2);
+    void (*density_n)(const asp_ndff *k, size_t n, const float *r2, const float *z2, float *out);
+    void (*sigma_n)(const asp_ndff *k, size_t n, const float *w, const float *s2, float *out);
+    void (*visible_n)(const asp_ndff *k, size_t n, const float *vx, const float *vy,
+                      const float *vz, const float *u1, const float *u2, float *mx, float *my,
+                      float *mz);
+    void (*normal_n)(const asp_ndff *k, size_t n, const float *u1, const float *u2,
+                     float *mx, float *my, float *mz);
+} asp_ndf_opsf;
+
+/* How a spec gives the slope map. */
+typedef enum asp_map_keys {
+    ASP_KEYS_SLOPE,       /* alpha | alpha_x alpha_y, rotation | rho, mean_x mean_y */
+    ASP_KEYS_ELLIPSOID    /* alpha_x alpha_y theta_x theta_y theta_z | a11..a33 | s11..s33 */
+} asp_map_keys;
+
+struct asp_model {
+    const char *name;
+    const char *alias;            /* a second name, or NULL */
+    const char *title;            /* one line */
+    const char *source;           /* paper and equation */
+    asp_map_keys keys;
+    double alpha;                 /* default roughness of the map */
+    const asp_param *params;      /* shape numbers of its own, in the order of shape[]; may be NULL */
+    size_t param_count;           /* at most ASP_SHAPE_NUMBERS */
+    /* Fills out->shape and out->table from the checked parameter values, already in out->shape.
+     * NULL if there is nothing to prepare. */
+    asp_status (*prepare)(asp_ndf *out, asp_error *err);
+    asp_ndf_ops  f64;
+    asp_ndf_opsf f32;
+};
+
+/* A record is a constant with external linkage, in C++ too. */
+#ifdef __cplusplus
+#define ASP_RECORD extern const
+#else
+#define ASP_RECORD const
+#endif
+
+#define ASP_NDF_OPS_(n, s) { n##density##s, n##sigma##s, n##visible##s, n##normal##s, \
+    n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s }
+#define ASP_NDF_OPS(n) ASP_NDF_OPS_(n##_, _64), ASP_NDF_OPS_(n##_, _32)
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,87 @@
+/* ggx.c - GGX, Trowbridge-Reitz; the standard surface of the Ellipsoid NDF
+ *
+ * The standard surface is the upper unit hemisphere. Walter et al. 2007; Walter, Dong, Marschner,
+ * Greenberg 2014; visible normals as spherical caps: Dupuy, Benyoub 2023. */
+#ifndef ASP_PRECISION
+#include "asperity_ndf.h"
+
+#define ASP_NDF ggx
+#define ASP_PRECISION 64
+#include "ggx.c"
+#undef ASP_PRECISION
+#define ASP_PRECISION 32
+#include "ggx.c"
+#undef ASP_PRECISION
+
+ASP_RECORD asp_model asp_model_ggx = {
+    "ggx", "trowbridge_reitz", "GGX (Trowbridge-Reitz)",
+    "Trowbridge, Reitz 1975; Walter et al. 2007",
+    ASP_KEYS_SLOPE, 0.3, NULL, 0, NULL, ASP_NDF_OPS(ggx)
+};
+
+/* The same surface, its slope map given by the ellipsoid's matrix A. */
+ASP_RECORD asp_model asp_model_ellipsoid = {
+    "ellipsoid", NULL, "Ellipsoid NDF: GGX through the slope map of A",
+    "Walter, Dong, Marschner, Greenberg 2014, eqs. 1-3",
+    ASP_KEYS_ELLIPSOID, 0.3, NULL, 0, NULL, ASP_NDF_OPS(ggx)
+};
+#undef ASP_NDF
+
+#else
+#include "asperity/elementary.h"
+
+/* P22 = 1 / (pi (1 + r^2/z^2)^2). */
+ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
+{
+    asp_real h = r2 + z2;
+    (void)k;
+    return R(1.0 / ASP_PI) / (h * h);
+}
+
+/* Half the hemisphere's area seen from above is its own disc, half the turned disc: (|v| + w)/2
+ * (Walter et al. 2014, eq. 6 with A = 1). Below the mean plane the difference would cancel. */
+ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
+{
+    asp_real h = aspi_sqrt(w * w + s2);
+    asp_real up = R(0.5) * (h + aspi_abs(w));
+    asp_real down = R(0.25) * s2 / aspi_max(up, R(1e-37));
+    (void)k;
+    return w < R(0.0) ? down : up;
+}
+
+/* The mirror image of v in the visible half of a sphere is uniform on the cap z > -v.z: the normal
+ * is v plus a point of the cap. Written so that neither end cancels: with a = 1 + v.z the point's
+ * height plus v.z is (1 - u1) a, and 1 minus its height is u1 a. */
+ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+{
+    asp_real s2 = v.x * v.x + v.y * v.y;
+    asp_real scale = R(1.0) / aspi_sqrt(s2 + v.z * v.z);
+    asp_real z = v.z * scale;
+    asp_real up = R(1.0) + aspi_abs(z);
+    asp_real a = v.z < R(0.0) ? s2 * scale * scale / up : up;
+    asp_real d = u1 * a;
+    asp_real r = aspi_sqrt(d * aspi_max(R(2.0) - d, R(0.0)));
+    asp_v2 t = aspi_sincos2pi(u2);
+    asp_v3 m;
+    (void)k;
+    m.x = r * t.x + v.x * scale;
+    m.y = r * t.y + v.y * scale;
+    m.z = (R(1.0) - u1) * a;
+    return m;
+}
+
+/* tan^2 = u1 / (1 - u1) (Walter et al. 2007, eq. 35). */
+ASP_FN asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
+{
+    asp_real r = aspi_sqrt(u1);
+    asp_v2 t = aspi_sincos2pi(u2);
+    asp_v3 m;
+    (void)k;
+    m.x = r * t.x;
+    m.y = r * t.y;
+    m.z = aspi_sqrt(R(1.0) - u1);
+    return m;
+}
+
+#include "asperity/ndf_loops.h"
+#endif
