@@ -2,6 +2,7 @@
  *
  *   1  Errors as text
  *   2  Measurements   read, evaluate, write: MERL, RGL, CSV
+ *   3  Height fields  make, read, slopes; the fabricated measurement
  *
  * Everything here may allocate and do file I/O; nothing prints or exits. Handles are freed by their
  * _free function, which takes NULL. A finished handle is read-only: any number of threads may
@@ -69,6 +70,114 @@ asp_measured *asp_measured_from_function(asp_brdf_function *f, const void *conte
                                          const char *description, asp_error *err);
 asp_measured *asp_measured_from_merl_table(const double *values, const char *description,
                                            asp_error *err);
+
+/* ------------------------------------------------------------------ 3  Height fields
+ *
+ * Explicit rough surfaces: made with known statistics or read from an instrument, their slopes, and
+ * a virtual gonioreflectometer that traces rays against one and writes down what comes back. */
+
+/* Called now and then by long work, always on the thread that called, with the share done in [0, 1].
+ * Nonzero cancels: the work ends with ASP_ECANCELLED. */
+typedef int asp_progress(void *context, double done);
+
+/* Heights over a grid of nx x ny points, row-major, ny rows of nx (x runs fastest), in the length
+ * unit of the spacing. NaN: not measured. A facet is a triangle: each square of four points is cut
+ * along a diagonal that alternates like a chessboard. */
+typedef struct asp_height_field {
+    int    nx, ny;
+    double dx, dy;
+    int    periodic;      /* 1: point nx is point 0 again, and the same in y */
+    float *heights;       /* owned; released by asp_height_field_free */
+} asp_height_field;
+
+/* What to make. The facets' slopes then have, per unit flat area, the density
+ * P22(p) = (1 + |p|^2/((gamma - 1) alpha^2))^-gamma / (pi alpha^2), which is the model `student_t`;
+ * gamma = infinity: exp(-|p|^2/alpha^2) / (pi alpha^2), `beckmann`. */
+typedef struct asp_surface_recipe {
+    uint64_t seed;
+    int    size;          /* points per side: a power of two, [64, 4096] */
+    double correlation;   /* where the height correlation exp(-r^2/c^2) falls to 1/e, in grid steps,
+                             [2, size/8] */
+    double patch;         /* the same for the local roughness, in correlation lengths, [1, 64], and
+                             correlation * patch <= size/4. Of no effect for gamma = infinity */
+    double alpha;         /* [1e-3, 1] */
+    double gamma;         /* [1.6, infinity] */
+} asp_surface_recipe;
+
+/* seed 1, 1024 points, correlation 8, patch 4, alpha 0.25, gamma 3. */
+asp_surface_recipe asp_surface_recipe_default(void);
+
+/* Makes an isotropic, periodic height field with dx = dy = 1. Same recipe, same heights.
+ * gamma = infinity: a Gaussian process by spectral synthesis, scaled so that the facets' rms slope
+ * is alpha/sqrt(2) along x and y. Finite gamma: the same process times a slowly varying local
+ * roughness whose square follows the inverse gamma distribution of shape gamma - 1 exactly, each
+ * quantile on an equal area; its slow change adds about (0.5/patch)^2 to the slope variance.
+ * ASP_EINVAL (the recipe's member is named), ASP_ENOMEM. On failure *out is untouched. */
+asp_status asp_height_field_make(const asp_surface_recipe *recipe, asp_height_field *out,
+                                 asp_error *err);
+
+/* Reads a measured height field, not periodic. Format f32: raw little-endian float32 in rows of x,
+ * with a text file of `key=value` lines beside it (<name>.meta.txt for <name>.f32: nx, ny, dx_um,
+ * dy_um, height_unit=um); heights and spacing in micrometres.
+ * ASP_EIO, ASP_EFORMAT, ASP_EUNKNOWN (a name that ends in no known format), ASP_ENOMEM. */
+asp_status asp_height_field_read(const char *path, asp_height_field *out, asp_error *err);
+void asp_height_field_free(asp_height_field *field);      /* takes NULL; clears *field */
+
+/* The slopes of the facets, each weighted by its flat area; facets with a NaN corner are left out. */
+typedef struct asp_slope_statistics {
+    size_t facets;
+    double mean_x, mean_y;
+    double rms_x, rms_y;        /* about the mean */
+    double correlation;         /* between the two, [-1, 1] */
+    /* Maximum likelihood of the radial families over |p - mean|, and the mean log-likelihood per
+     * facet that each reaches. gamma is capped at 100, which stands for infinity. */
+    double alpha, gamma;        double log_student;
+    double alpha_ggx;           double log_ggx;         /* gamma = 2 */
+    double alpha_beckmann;      double log_beckmann;    /* the rms of |p - mean| */
+    double P22[90];             /* measured density of slopes, averaged over the ring of slopes
+                                   tan(i) <= |p - mean| < tan(i + 1), i in degrees */
+} asp_slope_statistics;
+
+/* ASP_EINVAL when no facet can be formed or all lie flat, ASP_ENOMEM. */
+asp_status asp_height_field_slopes(const asp_height_field *field, asp_slope_statistics *out,
+                                   asp_error *err);
+
+/* A measurement to be made. */
+typedef struct asp_fabrication {
+    asp_surface_recipe surface;
+    const asp_metal *metal;     /* NULL: reflects everything */
+    size_t rays;                /* [1e4, 1e10] */
+    int    threads;             /* [1, 256] */
+} asp_fabrication;
+
+/* The default surface in gold, 12 million rays, 2 threads. */
+asp_fabrication asp_fabrication_default(void);
+
+typedef struct asp_fabrication_report {
+    asp_slope_statistics slopes;    /* of the very facets that were hit */
+    size_t  rays, lost;             /* lost: numerically trapped or through the surface */
+    asp_rgb albedo;                 /* reflected power over incident power, uniform hemispherical
+                                       light */
+    asp_rgb multiple;               /* share of the reflected power that met two facets or more */
+    double  bounces;                /* mean number of facets met */
+    size_t  cells;                  /* cells of the measurement before interpolation */
+    double  noise;                  /* median counting error 1/sqrt(rays) of the cells that hold the
+                                       central 90 % of the power */
+} asp_fabrication_report;
+
+/* A virtual gonioreflectometer. Rays fall on the surface of the recipe from all directions (uniform
+ * in projected solid angle, uniform in place, periodic: there is no edge), are reflected by flat
+ * facets with the metal's Fresnel term for as many bounces as it takes, and the power that leaves
+ * is collected in cells of half/difference angles. f of a cell is its power over the integral of
+ * cos(theta_i) cos(theta_o)/pi over the cell. Reciprocity and mirror symmetry fold phi_d to
+ * [0, pi/2]. Cells: 18 in theta_d, 12 in phi_d, in theta_h as fine as the counts allow; log f is
+ * then interpolated to MERL's 90 x 90 x 180. Where wi or wo would be below the horizon the table
+ * has no value.
+ *
+ * Same recipe, same table, whatever the number of threads. progress, report and err may be NULL.
+ * NULL on failure: ASP_EINVAL (the member is named), ASP_ENOMEM, ASP_ECANCELLED. */
+asp_measured *asp_fabricate(const asp_fabrication *what, asp_progress *progress, void *context,
+                            asp_fabrication_report *report, asp_error *err);
 
 #ifdef __cplusplus
 }
