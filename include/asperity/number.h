@@ -39,6 +39,15 @@
 #define ASP_RESTRICT restrict
 #endif
 
+/* Before a loop whose output may be one of its inputs: element i is read before it is written. */
+#if defined(__clang__)
+#define ASP_IN_PLACE _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define ASP_IN_PLACE _Pragma("GCC ivdep")
+#else
+#define ASP_IN_PLACE
+#endif
+
 #define ASP_PASTE_(a, b) a##b
 #define ASP_PASTE(a, b) ASP_PASTE_(a, b)
 /* A kernel's name in this precision. */

@@ -1,0 +1,503 @@
+/* facets.c - D, P22, sigma, masking, normals and densities: asperity.h sections 5, 8 and 9
+ *
+ * Read three times: this head, then the body in each precision. Single calls and loops share every
+ * formula; a loop is cut in stages so that the distribution's own loop can stand in the middle. */
+#ifndef ASP_PRECISION
+#include "asperity.h"
+#include "asperity_ndf.h"
+
+#define ASP_PRECISION 64
+#include "facets.c"
+#undef ASP_PRECISION
+#define ASP_PRECISION 32
+#include "facets.c"
+#undef ASP_PRECISION
+
+#else
+#include "asperity/elementary.h"
+#include "core/blocks.h"
+#include "core/facet.h"
+
+#ifndef ASPI_FACETS_NAMES
+#define ASPI_FACETS_NAMES
+#define density_arguments ASP_NAME(density_arguments)
+#define density_result ASP_NAME(density_result)
+#define visible_density ASP_NAME(visible_density)
+#define masking ASP_NAME(masking)
+#define lambda_of ASP_NAME(lambda_of)
+#define joint_masking ASP_NAME(joint_masking)
+#define loop_density_in ASP_NAME(loop_density_in)
+#define loop_density_out ASP_NAME(loop_density_out)
+#define loop_view ASP_NAME(loop_view)
+#define loop_view_vectors ASP_NAME(loop_view_vectors)
+#define loop_back ASP_NAME(loop_back)
+#define loop_masking ASP_NAME(loop_masking)
+#define loop_hidden ASP_NAME(loop_hidden)
+#define loop_joint ASP_NAME(loop_joint)
+#define loop_times ASP_NAME(loop_times)
+#define loop_visible_density ASP_NAME(loop_visible_density)
+#define loop_slopes ASP_NAME(loop_slopes)
+#define loop_scale ASP_NAME(loop_scale)
+#endif
+
+#define IN const asp_real *ASP_RESTRICT
+#define OUT asp_real *ASP_RESTRICT
+
+/* ---- formulas around the standard surface's */
+
+ASP_FN asp_v2 density_arguments(const asp_shape *k, asp_v3 m)
+{
+    asp_v3 v = aspi_facet(k, m);
+    asp_v2 a;
+    a.x = aspi_length2(v);
+    a.y = v.z <= ASPI_FLAT ? R(1.0) : v.z * v.z;
+    return a;
+}
+
+/* D(m) = D_std(m') / |det M|; 0 for facets that are vertical or turned down. */
+ASP_FN asp_real density_result(const asp_shape *k, asp_real standard, asp_real mz)
+{
+    return mz <= ASPI_FLAT ? R(0.0) : aspi_finite(standard * k->inv_det);
+}
+
+/* max(0, w.m) D(m) / sigma(w). */
+ASP_FN asp_real visible_density(asp_real cosine, asp_real density, asp_real sigma)
+{
+    asp_real p = cosine * density / (sigma < ASPI_SMALLEST ? ASPI_SMALLEST : sigma);
+    return cosine <= R(0.0) ? R(0.0) : aspi_finite(p);
+}
+
+ASP_FN asp_real masking(const asp_shape *k, asp_v3 w, asp_real sigma, int mask)
+{
+    asp_real area = aspi_masked(k, w, sigma, mask);
+    asp_real g = w.z / (area > R(0.0) ? area : R(1.0));
+    g = area == area ? g : area;
+    g = (mask & 15) == ASP_MASK_V_CAVITY && w.z == w.z ? R(1.0) : g;
+    return w.z <= R(0.0) ? R(0.0) : g;
+}
+
+ASP_FN asp_real lambda_of(const asp_shape *k, asp_v3 w, asp_real sigma_below, int mask)
+{
+    asp_real hidden = aspi_hidden(k, w, sigma_below, mask);
+    asp_real l = hidden / (w.z > R(0.0) ? w.z : R(1.0));
+    l = w.z == w.z ? l : w.z;
+    l = (mask & 15) == ASP_MASK_V_CAVITY && w.z == w.z ? R(0.0) : l;
+    return w.z <= R(0.0) ? (asp_real)INFINITY : l;
+}
+
+ASP_FN asp_real joint_masking(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_v3 m, asp_real sigma_i,
+                              asp_real sigma_o, int mask)
+{
+    asp_real si = aspi_masked(k, wi, sigma_i, mask), so = aspi_masked(k, wo, sigma_o, mask);
+    asp_real c_i = aspi_dot(wi, m), c_o = aspi_dot(wo, m);
+    asp_real g = wi.z * wo.z * aspi_joint(wi.z, wo.z, si, so, m.z, c_i, c_o, mask);
+    asp_real dark = aspi_min(aspi_min(wi.z, wo.z), aspi_min(aspi_min(c_i, c_o), m.z));
+    return dark <= R(0.0) ? R(0.0) : g;
+}
+
+/* ---- single calls */
+
+asp_real ASPI_CALL(asp_D)(const asp_shape *k, asp_v3 m)
+{
+    asp_v2 a = density_arguments(k, m);
+    return density_result(k, ASPI_OPS(k).density(k, a.x, a.y), m.z);
+}
+
+asp_real ASPI_CALL(asp_P22)(const asp_shape *k, asp_real p_x, asp_real p_y)
+{
+    asp_v3 m, v;
+    m.x = -p_x;
+    m.y = -p_y;
+    m.z = R(1.0);
+    v = aspi_facet(k, m);
+    return ASPI_OPS(k).density(k, aspi_length2(v), R(1.0)) * k->inv_det;
+}
+
+asp_real ASPI_CALL(asp_sigma)(const asp_shape *k, asp_v3 w)
+{
+    asp_v3 v = aspi_view(k, w);
+    return ASPI_OPS(k).sigma(k, v.z, aspi_length2(v));
+}
+
+asp_real ASPI_CALL(asp_G1)(const asp_shape *k, asp_v3 w, int mask)
+{
+    return masking(k, w, ASPI_CALL(asp_sigma)(k, w), mask);
+}
+
+asp_real ASPI_CALL(asp_lambda)(const asp_shape *k, asp_v3 w, int mask)
+{
+    asp_v3 v = aspi_view(k, w);
+    return lambda_of(k, w, ASPI_OPS(k).sigma(k, -v.z, aspi_length2(v)), mask);
+}
+
+asp_real ASPI_CALL(asp_G2)(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_v3 m, int mask)
+{
+    return joint_masking(k, wi, wo, m, ASPI_CALL(asp_sigma)(k, wi), ASPI_CALL(asp_sigma)(k, wo),
+                         mask);
+}
+
+asp_v3 ASPI_CALL(asp_sample_normal)(const asp_shape *k, asp_real u1, asp_real u2)
+{
+    return aspi_normalize(aspi_facet_back(k, ASPI_OPS(k).normal(k, u1, u2)));
+}
+
+asp_v3 ASPI_CALL(asp_sample_visible)(const asp_shape *k, asp_v3 wi, asp_real u1, asp_real u2)
+{
+    return aspi_normalize(aspi_facet_back(k, ASPI_OPS(k).visible(k, aspi_view(k, wi), u1, u2)));
+}
+
+asp_real ASPI_CALL(asp_pdf_normal)(const asp_shape *k, asp_v3 m)
+{
+    return ASPI_CALL(asp_D)(k, m) * m.z;
+}
+
+asp_real ASPI_CALL(asp_pdf_visible)(const asp_shape *k, asp_v3 wi, asp_v3 m)
+{
+    return visible_density(aspi_dot(wi, m), ASPI_CALL(asp_D)(k, m), ASPI_CALL(asp_sigma)(k, wi));
+}
+
+asp_v2 ASPI_CALL(asp_mean_slope)(const asp_shape *k)
+{
+    asp_v2 t;
+    t.x = k->map.tx;
+    t.y = k->map.ty;
+    return t;
+}
+
+asp_v3 ASPI_CALL(asp_mean_normal)(const asp_shape *k)
+{
+    asp_v3 m;
+    m.x = -k->map.tx;
+    m.y = -k->map.ty;
+    m.z = R(1.0);
+    return aspi_normalize(m);
+}
+
+/* ---- loops */
+
+ASP_CLONES static void loop_density_in(const asp_shape *k, size_t n, IN x, IN y, IN z, OUT r2,
+                                       OUT z2, OUT mz)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_v3 m;
+        asp_v2 a;
+        m.x = x[i];
+        m.y = y[i];
+        m.z = z[i];
+        a = density_arguments(k, m);
+        r2[i] = a.x;
+        z2[i] = a.y;
+        mz[i] = m.z;
+    }
+}
+
+ASP_CLONES static void loop_density_out(const asp_shape *k, size_t n, IN standard, IN mz, OUT out)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        out[i] = density_result(k, standard[i], mz[i]);
+}
+
+/* height and squared length of the standard view; sign = -1 looks from below */
+ASP_CLONES static void loop_view(const asp_shape *k, size_t n, asp_real sign, IN x, IN y, IN z,
+                                 OUT w, OUT s2)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_v3 v;
+        v.x = x[i];
+        v.y = y[i];
+        v.z = z[i];
+        v = aspi_view(k, v);
+        w[i] = sign * v.z;
+        s2[i] = aspi_length2(v);
+    }
+}
+
+ASP_CLONES static void loop_view_vectors(const asp_shape *k, size_t n, IN x, IN y, IN z, OUT vx,
+                                         OUT vy, OUT vz)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_v3 v;
+        v.x = x[i];
+        v.y = y[i];
+        v.z = z[i];
+        v = aspi_view(k, v);
+        vx[i] = v.x;
+        vy[i] = v.y;
+        vz[i] = v.z;
+    }
+}
+
+ASP_CLONES static void loop_back(const asp_shape *k, size_t n, IN x, IN y, IN z, OUT mx, OUT my,
+                                 OUT mz)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_v3 m;
+        m.x = x[i];
+        m.y = y[i];
+        m.z = z[i];
+        m = aspi_normalize(aspi_facet_back(k, m));
+        mx[i] = m.x;
+        my[i] = m.y;
+        mz[i] = m.z;
+    }
+}
+
+/* The outputs of these may be one of the inputs: an element is read before it is written. */
+ASP_CLONES static void loop_masking(const asp_shape *k, size_t n, int mask, asp_cv3s w,
+                                    const asp_real *sigma, asp_real *out)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        asp_v3 v;
+        v.x = w.x[i];
+        v.y = w.y[i];
+        v.z = w.z[i];
+        out[i] = masking(k, v, sigma[i], mask);
+    }
+}
+
+ASP_CLONES static void loop_hidden(const asp_shape *k, size_t n, int mask, asp_cv3s w,
+                                   const asp_real *below, asp_real *out)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        asp_v3 v;
+        v.x = w.x[i];
+        v.y = w.y[i];
+        v.z = w.z[i];
+        out[i] = lambda_of(k, v, below[i], mask);
+    }
+}
+
+ASP_CLONES static void loop_joint(const asp_shape *k, size_t n, int mask, asp_cv3s wi, asp_cv3s wo,
+                                  asp_cv3s m, const asp_real *sigma_i, const asp_real *sigma_o,
+                                  asp_real *out)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        asp_v3 a, b, c;
+        a.x = wi.x[i];
+        a.y = wi.y[i];
+        a.z = wi.z[i];
+        b.x = wo.x[i];
+        b.y = wo.y[i];
+        b.z = wo.z[i];
+        c.x = m.x[i];
+        c.y = m.y[i];
+        c.z = m.z[i];
+        out[i] = joint_masking(k, a, b, c, sigma_i[i], sigma_o[i], mask);
+    }
+}
+
+ASP_CLONES static void loop_visible_density(size_t n, asp_cv3s wi, asp_cv3s m, const asp_real *d,
+                                            const asp_real *sigma, asp_real *out)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        asp_v3 a, b;
+        a.x = wi.x[i];
+        a.y = wi.y[i];
+        a.z = wi.z[i];
+        b.x = m.x[i];
+        b.y = m.y[i];
+        b.z = m.z[i];
+        out[i] = visible_density(aspi_dot(a, b), d[i], sigma[i]);
+    }
+}
+
+ASP_CLONES static void loop_times(size_t n, const asp_real *a, const asp_real *b, asp_real *out)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++)
+        out[i] = a[i] * b[i];
+}
+
+ASP_CLONES static void loop_slopes(const asp_shape *k, size_t n, IN p_x, IN p_y, OUT r2, OUT z2)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_v3 m;
+        m.x = -p_x[i];
+        m.y = -p_y[i];
+        m.z = R(1.0);
+        r2[i] = aspi_length2(aspi_facet(k, m));
+        z2[i] = R(1.0);
+    }
+}
+
+ASP_CLONES static void loop_scale(size_t n, asp_real by, IN a, OUT out)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        out[i] = a[i] * by;
+}
+
+/* ---- blocks */
+
+void aspi_block_density(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
+{
+    asp_real r2[ASPI_BLOCK], z2[ASPI_BLOCK], mz[ASPI_BLOCK], d[ASPI_BLOCK];
+    loop_density_in(k, n, m.x, m.y, m.z, r2, z2, mz);
+    ASPI_OPS(k).density_n(k, n, r2, z2, d);
+    loop_density_out(k, n, d, mz, out);
+}
+
+void aspi_block_sigma(const asp_shape *k, size_t n, asp_cv3s w, asp_real *out)
+{
+    asp_real h[ASPI_BLOCK], s2[ASPI_BLOCK];
+    loop_view(k, n, R(1.0), w.x, w.y, w.z, h, s2);
+    ASPI_OPS(k).sigma_n(k, n, h, s2, out);
+}
+
+void aspi_block_visible(const asp_shape *k, size_t n, asp_cv3s wi, const asp_real *u1,
+                        const asp_real *u2, asp_v3s m)
+{
+    asp_real vx[ASPI_BLOCK], vy[ASPI_BLOCK], vz[ASPI_BLOCK];
+    asp_real x[ASPI_BLOCK], y[ASPI_BLOCK], z[ASPI_BLOCK];
+    loop_view_vectors(k, n, wi.x, wi.y, wi.z, vx, vy, vz);
+    ASPI_OPS(k).visible_n(k, n, vx, vy, vz, u1, u2, x, y, z);
+    loop_back(k, n, x, y, z, m.x, m.y, m.z);
+}
+
+/* ---- batches: block by block; a block's inputs are read before its outputs are written */
+
+#define FOR_BLOCKS(i, size, n) \
+    for (i = 0; i < (n) && (size = (n) - i < ASPI_BLOCK ? (n) - i : ASPI_BLOCK, 1); \
+         i += ASPI_BLOCK)
+
+static asp_cv3s ASP_NAME(from)(asp_cv3s a, size_t i)
+{
+    a.x += i;
+    a.y += i;
+    a.z += i;
+    return a;
+}
+
+static asp_v3s ASP_NAME(to)(asp_v3s a, size_t i)
+{
+    a.x += i;
+    a.y += i;
+    a.z += i;
+    return a;
+}
+#define FROM ASP_NAME(from)
+#define TO ASP_NAME(to)
+
+void ASPI_CALL(asp_D_n)(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
+{
+    size_t i, size;
+    FOR_BLOCKS(i, size, n)
+        aspi_block_density(k, size, FROM(m, i), out + i);
+}
+
+void ASPI_CALL(asp_P22_n)(const asp_shape *k, size_t n, const asp_real *p_x, const asp_real *p_y,
+                          asp_real *out)
+{
+    asp_real r2[ASPI_BLOCK], z2[ASPI_BLOCK], d[ASPI_BLOCK];
+    size_t i, size;
+    FOR_BLOCKS(i, size, n) {
+        loop_slopes(k, size, p_x + i, p_y + i, r2, z2);
+        ASPI_OPS(k).density_n(k, size, r2, z2, d);
+        loop_scale(size, k->inv_det, d, out + i);
+    }
+}
+
+void ASPI_CALL(asp_sigma_n)(const asp_shape *k, size_t n, asp_cv3s w, asp_real *out)
+{
+    size_t i, size;
+    FOR_BLOCKS(i, size, n)
+        aspi_block_sigma(k, size, FROM(w, i), out + i);
+}
+
+void ASPI_CALL(asp_G1_n)(const asp_shape *k, size_t n, asp_cv3s w, int mask, asp_real *out)
+{
+    asp_real sigma[ASPI_BLOCK];
+    size_t i, size;
+    FOR_BLOCKS(i, size, n) {
+        aspi_block_sigma(k, size, FROM(w, i), sigma);
+        loop_masking(k, size, mask, FROM(w, i), sigma, out + i);
+    }
+}
+
+void ASPI_CALL(asp_lambda_n)(const asp_shape *k, size_t n, asp_cv3s w, int mask, asp_real *out)
+{
+    asp_real h[ASPI_BLOCK], s2[ASPI_BLOCK], below[ASPI_BLOCK];
+    size_t i, size;
+    FOR_BLOCKS(i, size, n) {
+        loop_view(k, size, R(-1.0), w.x + i, w.y + i, w.z + i, h, s2);
+        ASPI_OPS(k).sigma_n(k, size, h, s2, below);
+        loop_hidden(k, size, mask, FROM(w, i), below, out + i);
+    }
+}
+
+void ASPI_CALL(asp_G2_n)(const asp_shape *k, size_t n, asp_cv3s wi, asp_cv3s wo, asp_cv3s m,
+                         int mask, asp_real *out)
+{
+    asp_real sigma_i[ASPI_BLOCK], sigma_o[ASPI_BLOCK];
+    size_t i, size;
+    FOR_BLOCKS(i, size, n) {
+        aspi_block_sigma(k, size, FROM(wi, i), sigma_i);
+        aspi_block_sigma(k, size, FROM(wo, i), sigma_o);
+        loop_joint(k, size, mask, FROM(wi, i), FROM(wo, i), FROM(m, i), sigma_i, sigma_o,
+                   out + i);
+    }
+}
+
+void ASPI_CALL(asp_sample_normal_n)(const asp_shape *k, size_t n, const asp_real *u1,
+                                    const asp_real *u2, asp_v3s m)
+{
+    asp_real x[ASPI_BLOCK], y[ASPI_BLOCK], z[ASPI_BLOCK];
+    size_t i, size;
+    FOR_BLOCKS(i, size, n) {
+        asp_v3s out = TO(m, i);
+        ASPI_OPS(k).normal_n(k, size, u1 + i, u2 + i, x, y, z);
+        loop_back(k, size, x, y, z, out.x, out.y, out.z);
+    }
+}
+
+void ASPI_CALL(asp_sample_visible_n)(const asp_shape *k, size_t n, asp_cv3s wi, const asp_real *u1,
+                                     const asp_real *u2, asp_v3s m)
+{
+    size_t i, size;
+    FOR_BLOCKS(i, size, n)
+        aspi_block_visible(k, size, FROM(wi, i), u1 + i, u2 + i, TO(m, i));
+}
+
+void ASPI_CALL(asp_pdf_normal_n)(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
+{
+    asp_real d[ASPI_BLOCK];
+    size_t i, size;
+    FOR_BLOCKS(i, size, n) {
+        aspi_block_density(k, size, FROM(m, i), d);
+        loop_times(size, d, m.z + i, out + i);
+    }
+}
+
+void ASPI_CALL(asp_pdf_visible_n)(const asp_shape *k, size_t n, asp_cv3s wi, asp_cv3s m,
+                                  asp_real *out)
+{
+    asp_real d[ASPI_BLOCK], sigma[ASPI_BLOCK];
+    size_t i, size;
+    FOR_BLOCKS(i, size, n) {
+        aspi_block_density(k, size, FROM(m, i), d);
+        aspi_block_sigma(k, size, FROM(wi, i), sigma);
+        loop_visible_density(size, FROM(wi, i), FROM(m, i), d, sigma, out + i);
+    }
+}
+
+#undef IN
+#undef OUT
+#undef FROM
+#undef TO
+#undef FOR_BLOCKS
+#endif
