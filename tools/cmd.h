@@ -101,6 +101,9 @@ int cmd_ndf(const cmd_args *args, const char *option, size_t index, asp_ndf *out
 int cmd_material(const cmd_args *args, const char *option, size_t index, asp_material *out);
 int cmd_direction(const cmd_args *args, const char *option, asp_vec3 *out);
 int cmd_mask(const cmd_args *args, const char *option, int *out);
+/* The one surface of a record with the options ndf, material and mask: --material, or the perfect
+ * mirror facets of --ndf; --mask overrules the material's. */
+int cmd_surface(const cmd_args *args, asp_material *out);
 
 /* ------------------------------------------------------------------ saying what is wrong
  *

@@ -1,0 +1,11 @@
+/* commands.c - the subcommands in the order of the help: one row each */
+#include "cmd.h"
+
+#define COMMANDS(row) \
+    row(eval)
+
+#define DECLARE(name) extern const cmd_record cmd_##name;
+COMMANDS(DECLARE)
+
+#define POINT(name) &cmd_##name,
+const cmd_record *const cmd_commands[] = { COMMANDS(POINT) NULL };

@@ -1,0 +1,94 @@
+/* specs.c - options that are distributions, materials, directions and maskings */
+#include "frame.h"
+
+#include <math.h>
+#include <string.h>
+
+/* `--ndf ggx:alpha=-1: byte 10: alpha = -1 is outside ...` */
+static int bad_value(const char *option, const char *text, const asp_error *err)
+{
+    char line[640];
+    return cmd_usage("--%s %s: %s", option, text, asp_error_text(err, line, sizeof line));
+}
+
+int cmd_ndf(const cmd_args *args, const char *option, size_t index, asp_ndf *out)
+{
+    asp_error err;
+    const char *spec = cmd_text_at(args, option, index);
+    if (asp_ndf_parse(NULL, spec, out, &err) == ASP_OK)
+        return CMD_OK;
+    return bad_value(option, spec, &err);
+}
+
+int cmd_material(const cmd_args *args, const char *option, size_t index, asp_material *out)
+{
+    asp_error err;
+    const char *spec = cmd_text_at(args, option, index);
+    if (asp_material_parse(NULL, spec, out, &err) == ASP_OK)
+        return CMD_OK;
+    return bad_value(option, spec, &err);
+}
+
+int cmd_mask(const cmd_args *args, const char *option, int *out)
+{
+    asp_error err;
+    const char *name = cmd_text(args, option);
+    if (asp_mask_parse(name, out, &err) == ASP_OK)
+        return CMD_OK;
+    return bad_value(option, name, &err);
+}
+
+int cmd_direction(const cmd_args *args, const char *option, asp_vec3 *out)
+{
+    const double degree = 3.14159265358979323846 / 180;
+    const char *text = cmd_text(args, option), *at = text;
+    double value[3];
+    int count = 0;
+    for (;; at++) {
+        size_t n = strcspn(at, ",");
+        if (count == 3 || !aspi_parse_number(at, n, &value[count++]))
+            return cmd_usage("--%s '%s': expected x,y,z or theta,phi in degrees", option, text);
+        at += n;
+        if (!*at)
+            break;
+    }
+    if (count == 1)
+        return cmd_usage("--%s '%s': expected x,y,z or theta,phi in degrees", option, text);
+    if (count == 2) {
+        double theta = value[0] * degree, phi = value[1] * degree;
+        if (!(value[0] >= 0 && value[0] <= 180))
+            return cmd_usage("--%s '%s': theta = %g is outside [0, 180]", option, text, value[0]);
+        value[0] = sin(theta) * cos(phi);
+        value[1] = sin(theta) * sin(phi);
+        value[2] = theta == 90 * degree ? 0 : cos(theta);
+    }
+    double length = hypot(hypot(value[0], value[1]), value[2]);
+    if (!(length > 0) || isinf(length))
+        return cmd_usage("--%s '%s': length %g is outside (0, 1e308]", option, text, length);
+    out->x = value[0] / length;
+    out->y = value[1] / length;
+    out->z = value[2] / length;
+    return CMD_OK;
+}
+
+int cmd_surface(const cmd_args *args, asp_material *out)
+{
+    int mask = 0, status = CMD_OK;
+    size_t ndfs = cmd_given(args, "ndf"), materials = cmd_given(args, "material");
+    if (ndfs + materials != 1)
+        return cmd_usage("%s: give --ndf SPEC or --material SPEC",
+                         ndfs + materials ? "both --ndf and --material" : "no surface");
+    if (cmd_given(args, "mask"))
+        status = cmd_mask(args, "mask", &mask);
+    if (status == CMD_OK && ndfs) {
+        asp_ndf ndf;
+        status = cmd_ndf(args, "ndf", 0, &ndf);
+        if (status == CMD_OK)
+            *out = asp_mirror(&ndf, mask);
+    } else if (status == CMD_OK) {
+        status = cmd_material(args, "material", 0, out);
+        if (status == CMD_OK && cmd_given(args, "mask"))
+            out->mask = mask;
+    }
+    return status;
+}
