@@ -6,7 +6,7 @@
 
 /* Asked in this order; csv last because almost any text could be one. */
 const aspi_format *const aspi_formats[] = {
-    &aspi_format_merl, &aspi_format_cornell, &aspi_format_lumos,
+    &aspi_format_merl, &aspi_format_rgl, &aspi_format_cornell, &aspi_format_lumos,
     &aspi_format_csv, NULL
 };
 
