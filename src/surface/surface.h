@@ -1,0 +1,112 @@
+/* surface.h - what the files of this folder share: random numbers, the transform, the tracer and
+ * the cells of the gonioreflectometer */
+#ifndef ASPI_SURFACE_H
+#define ASPI_SURFACE_H
+
+#include "asperity_data.h"
+
+#define ASPI_PI 3.14159265358979323846
+
+/* ---- random numbers: SplitMix64 (Steele, Lea, Flood 2014), one stream per seed and purpose */
+
+typedef struct aspi_rng { uint64_t state; } aspi_rng;
+
+static inline uint64_t aspi_rng_next(aspi_rng *rng)
+{
+    uint64_t z = rng->state += 0x9E3779B97F4A7C15u;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    return z ^ (z >> 31);
+}
+
+/* [0, 1), 53 bits */
+static inline double aspi_rng_double(aspi_rng *rng)
+{
+    return (double)(aspi_rng_next(rng) >> 11) * 0x1p-53;
+}
+
+static inline aspi_rng aspi_rng_make(uint64_t seed, uint64_t stream)
+{
+    aspi_rng rng = { seed };
+    uint64_t a = aspi_rng_next(&rng);
+    rng.state = stream ^ 0xD1B54A32D192ED03u;
+    rng.state = a ^ aspi_rng_next(&rng);
+    return rng;
+}
+
+/* ---- the discrete Fourier transform */
+
+typedef struct aspi_complex { double re, im; } aspi_complex;
+
+/* In place over n x n values, n a power of two, unscaled, exponent +i; the result is transposed:
+ * data[x n + y] = sum over kx, ky of data[ky n + kx] exp(2 pi i (kx x + ky y)/n). `roots` has room
+ * for n/2 values. */
+void aspi_fft2(aspi_complex *data, int n, aspi_complex *roots);
+
+/* ---- facets */
+
+typedef struct aspi_slope { double p, q; } aspi_slope;
+
+/* Slopes of the two triangles of a square with corner heights h00, h10 (x + 1), h01 (y + 1), h11.
+ * parity (x + y) & 1 says along which diagonal it is cut: 0 from 00 to 11, 1 from 10 to 01. The
+ * first triangle is the one with the lower edge (y), the second the one with the upper. */
+static inline void aspi_square_slopes(int parity, double h00, double h10, double h01, double h11,
+                                      double dx, double dy, aspi_slope out[2])
+{
+    out[0].p = (h10 - h00) / dx;
+    out[1].p = (h11 - h01) / dx;
+    out[0].q = (parity ? h01 - h00 : h11 - h10) / dy;
+    out[1].q = (parity ? h11 - h10 : h01 - h00) / dy;
+}
+
+/* ---- the tracer */
+
+typedef struct aspi_tracer aspi_tracer;
+
+/* Builds the search tree over a periodic field of even nx and ny with finite heights. The field
+ * need not be kept. */
+aspi_tracer *aspi_tracer_make(const asp_height_field *field, asp_error *err);
+void aspi_tracer_free(aspi_tracer *tracer);
+
+typedef struct aspi_path {
+    asp_vec3 wo;         /* where the light leaves to, z > 0 */
+    asp_rgb  weight;     /* product of the Fresnel terms */
+    int      bounces;    /* facets met, >= 1 */
+} aspi_path;
+
+/* Light from direction wi (wi.z > 0) onto the place (u, v) in [0, 1)^2 of the period, at the height
+ * of the highest point. metal NULL: reflects all. Returns 0 when the ray is lost numerically. */
+int aspi_trace(const aspi_tracer *tracer, double u, double v, asp_vec3 wi, const asp_metal *metal,
+               aspi_path *out);
+
+/* ---- the cells of the gonioreflectometer */
+
+enum { ASPI_CELLS_H = 180, ASPI_CELLS_D = 18, ASPI_CELLS_PHI = 12,
+       ASPI_CELLS = ASPI_CELLS_H * ASPI_CELLS_D * ASPI_CELLS_PHI };
+
+/* Fixed point, so that sums do not depend on the order: weights in units of 2^-28. */
+#define ASPI_WEIGHT_ONE 0x1p28
+typedef struct aspi_cell { uint64_t count, r, g, b; } aspi_cell;
+
+/* Order [theta_d][phi_d][theta_h]: theta_h square-root spaced over [0, pi/2], theta_d even over
+ * [0, pi/2], phi_d even over the folded range [0, pi/2]. */
+typedef struct aspi_counts {
+    aspi_cell cells[ASPI_CELLS];
+    uint64_t  rays, lost, bounces;
+    aspi_cell all, multiple;            /* multiple: paths of two bounces or more */
+} aspi_counts;
+
+/* Half and difference angles (Rusinkiewicz 1998), phi_d folded to [0, pi/2]. */
+void aspi_half_difference(asp_vec3 wi, asp_vec3 wo, double *theta_h, double *theta_d,
+                          double *phi_d);
+
+/* Sends `rays` rays; *counts is overwritten. `phase` of progress runs from 0 to 1. */
+asp_status aspi_gonio_count(const aspi_tracer *tracer, const asp_metal *metal, uint64_t seed,
+                            size_t rays, int threads, asp_progress *progress, void *context,
+                            aspi_counts *counts, asp_error *err);
+
+/* Turns counts into f over MERL's grid, 3 x 90 x 90 x 180, negative where there is no value. */
+asp_status aspi_gonio_table(const aspi_counts *counts, double *values,
+                            asp_fabrication_report *report, asp_error *err);
+
+#endif
