@@ -123,7 +123,8 @@ typedef struct asp_axis {
     const char *label;               /* with the unit: "theta_{h} [deg]" */
     asp_scale   scale;
     double      low, high;           /* low < high (log: both > 0); both 0: from the data */
-    double      step;                /* linear: distance of the ticks; 0: 1, 2 or 5 times 10^n */
+    double      step;                /* linear: distance of the ticks; 0: 1, 2 or 5 times 10^n,
+                                      * or 15, 30, 45 where the label says [deg] */
     double      decades;             /* log from data: at most so many below the highest; 0: 8 */
 } asp_axis;
 
@@ -186,7 +187,7 @@ typedef struct asp_polar {
     size_t            series_count;
     const double     *incidence;     /* angles of incidence, radians in [0, pi/2]: arrows on the left */
     size_t            incidence_count;
-    asp_legend        legend;        /* AUTO: below */
+    asp_legend        legend;        /* NONE, or below the plot for any other */
     int               width;         /* px, [160, 8192]; 0: 600. The height follows. */
 } asp_polar;
 
