@@ -57,7 +57,8 @@ ASP_FN asp_v2 density_arguments(const asp_shape *k, asp_v3 m)
 /* D(m) = D_std(m') / |det M|; 0 for facets that are vertical or turned down. */
 ASP_FN asp_real density_result(const asp_shape *k, asp_real standard, asp_real mz)
 {
-    return mz <= ASPI_FLAT ? R(0.0) : aspi_finite(standard * k->inv_det);
+    asp_real d = aspi_finite(standard * k->inv_det);
+    return mz <= ASPI_FLAT ? R(0.0) : d;
 }
 
 /* max(0, w.m) D(m) / sigma(w). */

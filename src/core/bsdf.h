@@ -1,0 +1,50 @@
+/* bsdf.h - what a scattering model is: a pure function of D, sigma_i, sigma_o, cosines and F
+ *
+ * A model is one file in src/bsdf, read twice like a distribution, and a row in bsdfs.def. */
+#ifndef ASPI_BSDF_H
+#define ASPI_BSDF_H
+
+#include "asperity_ndf.h"
+#include "core/spec.h"
+
+/* Which Fresnel term; its colours are material.c and material.d. */
+enum {
+    ASPI_FRESNEL_ONE,          /* 1 */
+    ASPI_FRESNEL_CONDUCTOR,    /* c = eta, d = k */
+    ASPI_FRESNEL_F82,          /* c = f0, d = tint */
+    ASPI_FRESNEL_DIELECTRIC    /* c.r = eta */
+};
+
+typedef struct aspi_bsdf_key { const char *name, *what; } aspi_bsdf_key;
+
+struct asp_bsdf {
+    const char *name, *title, *source;
+    const aspi_bsdf_key *keys;        /* ends with a NULL name */
+    int mixed;                        /* 1: a cosine lobe is sampled beside the visible normals */
+    /* Reads the model's own keys and the Fresnel term's. */
+    asp_status (*parse)(aspi_spec *spec, asp_material *out, asp_error *err);
+    /* f from F and from x = D G2 / (4 cos_i cos_o), with y multiplying what does not come from
+     * facets; the caller may scale x and y alike. */
+    asp_rgb  (*value)(const asp_material *mat, asp_rgb F, double x, double y);
+    asp_rgbf (*valuef)(const asp_materialf *mat, asp_rgbf F, float x, float y);
+    void (*value_n)(const asp_material *mat, size_t n, const double *x, const double *y, double *r,
+                    double *g, double *b);
+    void (*value_nf)(const asp_materialf *mat, size_t n, const float *x, const float *y, float *r,
+                     float *g, float *b);
+    /* The share of samples spent on visible normals, from F at cos_i; used when mixed. */
+    double (*share)(const asp_material *mat, asp_rgb F);
+    float  (*sharef)(const asp_materialf *mat, asp_rgbf F);
+};
+
+/* The keys that name a Fresnel term: metal, eta with k, eta alone, f0 with tint. `initial` is taken
+ * when none is given. */
+asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material *out,
+                              asp_error *err);
+#define ASPI_FRESNEL_KEYS \
+    { "metal", "a metal by name: Au, Ag, Al, Cu, ..." }, \
+    { "eta", "index of refraction, interior over exterior; with k that of a conductor" }, \
+    { "k", "extinction coefficient" }, \
+    { "f0", "reflectance at normal incidence, Schlick's term" }, \
+    { "tint", "with f0: factor at 82 degrees (F82-tint), 1 = Schlick" }
+
+#endif

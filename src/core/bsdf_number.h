@@ -1,0 +1,13 @@
+/* bsdf_number.h - the names of a scattering model's formulas in this precision */
+#ifndef ASPI_BSDF_NUMBER_ONCE
+#define ASPI_BSDF_NUMBER_ONCE
+#define bsdf_value ASP_NDF_NAME(_value)
+#define bsdf_value_n ASP_NDF_NAME(_value_n)
+#define bsdf_share ASP_NDF_NAME(_share)
+#endif
+#undef asp_mat
+#if ASP_PRECISION == 64
+#define asp_mat asp_material
+#else
+#define asp_mat asp_materialf
+#endif
