@@ -3,6 +3,8 @@
  *   1  Errors as text
  *   2  Measurements   read, evaluate, write: MERL, RGL, CSV
  *   3  Height fields  make, read, slopes; the fabricated measurement
+ *   4  Fitting        distributions fitted to a measurement
+ *   5  Laws           what every distribution must obey, checked
  *
  * Everything here may allocate and do file I/O; nothing prints or exits. Handles are freed by their
  * _free function, which takes NULL. A finished handle is read-only: any number of threads may
@@ -178,6 +180,167 @@ typedef struct asp_fabrication_report {
  * NULL on failure: ASP_EINVAL (the member is named), ASP_ENOMEM, ASP_ECANCELLED. */
 asp_measured *asp_fabricate(const asp_fabrication *what, asp_progress *progress, void *context,
                             asp_fabrication_report *report, asp_error *err);
+
+/* ------------------------------------------------------------------ 4  Fitting
+ *
+ * Distributions fitted to a measurement through one material, in every channel c
+ *
+ *     f_c = diffuse_c / pi + specular_c F(eta) D G2 / (4 cos(theta_i) cos(theta_o)),
+ *
+ * which is `lambert_specular`: a Lambertian base under isotropic facets (Ribardiere et al. 2017,
+ * section 6). diffuse and specular are not negative, eta is shared by the channels. The same form
+ * serves metals: for eta -> 100 the dielectric term F tends to 1 at all angles below 80 degrees, and
+ * `specular` is the coloured reflectance. Between the two, eta and specular trade against each other
+ * (specular F(eta) is all that is seen near the normal); what the data do not tell apart has a large
+ * uncertainty and a correlation near -1.
+ *
+ * Free are alpha of the slope map, every shape number of the model within its range, eta, diffuse
+ * and specular. */
+
+/* A way to measure the distance between model m and data d over the geometries j and channels. */
+typedef struct asp_loss {
+    const char *name;
+    const char *title;                    /* one line */
+    const char *definition;               /* the formula of the reported error, in words */
+} asp_loss;
+
+/* nad           sum w |m - d| / sum w d, w = cos(theta_i) cos(theta_o): the normalised absolute
+ *               difference of the STD paper, weighted so that grazing angles do not rule
+ * log           root mean square of log((1 + m cos(theta_i)) / (1 + d cos(theta_i))): error E2 of
+ *               Low et al. 2012; what is below 1/sr hardly counts in relative terms
+ * log_relative  root mean square of log((m + 0.001/sr) / (d + 0.001/sr)): peak and tail alike
+ * Ends with NULL. */
+#define ASP_LOSS_LIMIT 8
+const asp_loss *const *asp_losses(void);
+
+typedef enum asp_fit_reason {
+    ASP_FIT_EXACT = 3,        /* the residual vanishes to rounding */
+    ASP_FIT_STEP = 2,         /* the parameters no longer move */
+    ASP_FIT_LOSS = 1,         /* the loss no longer falls */
+    ASP_FIT_EVALUATIONS = -1, /* the limit of evaluations was reached while the loss still fell */
+    ASP_FIT_SINGULAR = -2     /* no start gave a finite loss */
+} asp_fit_reason;
+
+const char *asp_fit_reason_text(asp_fit_reason reason);
+
+#define ASP_FIT_PARAMETERS 16
+
+typedef struct asp_fit_parameter {
+    char   name[24];          /* "alpha", "gamma", "eta", "diffuse_r", ... */
+    double value;
+    double uncertainty;       /* one standard deviation; infinity where the data say nothing */
+    double low, high;         /* value minus and plus one standard deviation, within the range and in
+                                 the scale of the search: 1/gamma for a range that ends at infinity */
+    int    at_bound;          /* -1 at the lower end of its range, 1 at the upper, 0 inside */
+    int    determined;        /* 0: the interval spans a large part of the range; the value is then
+                                 one of many that fit as well */
+} asp_fit_parameter;
+
+typedef struct asp_fit_result {
+    const asp_model *model;
+    asp_material material;
+    char   spec[640];                     /* of the material, read back exactly */
+    size_t parameter_count;
+    asp_fit_parameter parameter[ASP_FIT_PARAMETERS];
+    /* Row-major, parameter_count columns used of ASP_FIT_PARAMETERS; NaN where undetermined. */
+    double correlation[ASP_FIT_PARAMETERS * ASP_FIT_PARAMETERS];
+    double error[ASP_LOSS_LIMIT];         /* of all losses, in the order of asp_losses() */
+    size_t geometries;                    /* used in the fit */
+    size_t evaluations;                   /* of the model over the geometries */
+    asp_fit_reason reason;
+} asp_fit_result;
+
+/* Set to zero for the defaults. */
+typedef struct asp_fit_options {
+    const asp_model *const *models;       /* ends with NULL, at most 32; NULL: asp_fit_models */
+    const char *loss;                     /* NULL: "nad" */
+    int      starts;                      /* polished starts per distribution, [1, 64]; 0: 4 */
+    uint64_t seed;                        /* of the jitter of the starts */
+    int      mask;                        /* asp_mask */
+    asp_progress *progress;               /* NULL: none */
+    void    *context;
+} asp_fit_options;
+
+/* The default models: all of asp_models() but those that are another parametrisation of a model
+ * before them (ASP_KEYS_ELLIPSOID). Writes at most `room` of them and returns how many there are. */
+size_t asp_fit_models(const asp_model **out, size_t room);
+
+/* The geometries that a fit sees, to be freed with free(); NULL on failure.
+ * Scattered data: all listed ones with both directions above the horizon and a finite value.
+ * Gridded data: 55 theta_h (every bin of MERL up to 7.8 degrees, every second one above), theta_d =
+ * 2.5, 7.5, ... 77.5 degrees, 8 phi_d, all at centres of MERL's bins; anisotropic data at 4 azimuths
+ * of the half vector. Left out are geometries with either direction beyond 80 degrees, where
+ * instruments interpolate and microfacet theory ends, and those where no channel has a value
+ * above 0. */
+asp_measurement *asp_fit_geometries(const asp_measured *measured, size_t *count, asp_error *err);
+
+/* Fits each model. *results: one per model in the order given, to be freed with free(); written on
+ * success only. Levenberg-Marquardt (MINPACK) over alpha, shape and eta with the colours eliminated
+ * by non-negative least squares at each step; absolute differences by iterative reweighting. Starts:
+ * a jittered grid, the whole numbers and the ends of each shape range, and the optima of the models
+ * with fewer shape numbers that were fitted before, so that a distribution is never fitted worse
+ * than one it contains. Same measurement, same options: same bits.
+ *
+ * Uncertainties: White's heteroscedasticity-consistent covariance A^-1 B A^-1 of the joint Jacobian
+ * at the optimum, A the curvature of the loss, B the scatter of its gradient over geometries. They
+ * assume independent errors; where the model itself does not fit they are too small.
+ *
+ * ASP_EINVAL, ASP_EUNKNOWN (loss), ASP_EFORMAT (no usable geometry), ASP_ENOMEM, ASP_ECANCELLED. */
+asp_status asp_fit(const asp_measured *measured, const asp_fit_options *options,
+                   asp_fit_result **results, size_t *count, asp_error *err);
+
+/* ------------------------------------------------------------------ 5  Laws
+ *
+ * What every distribution must obey, whatever its model: a model of your own is tried by the same
+ * table. Only the public face is used (evaluators, samplers, the slope map), never a formula that
+ * the model itself was written from. */
+
+typedef struct asp_law {
+    const char *name;       /* one word, e.g. "sigma" */
+    const char *says;       /* the law in a line */
+    const char *source;     /* paper and equation, or the page of docs that derives it */
+    const char *unit;       /* what `worst` and `allowed` count: "relative", "absolute",
+                               "-log10 p" (of a chi-square test, corrected for their number) */
+} asp_law;
+
+/* The laws in the order in which they are checked; NULL past the last. */
+const asp_law *asp_laws(size_t index);
+
+/* The finding nearest to, or furthest beyond, what is allowed. */
+typedef struct asp_law_result {
+    const asp_law *law;
+    int    passed;          /* worst <= allowed, everywhere */
+    double worst;           /* the largest deviation, in law->unit; infinite for a NaN */
+    double allowed;         /* what is allowed there; it may depend on the place */
+    size_t checks;          /* comparisons made; 0 where the law says nothing of this value */
+    char   where[192];      /* the place: direction, masking, sizes; "" where checks is 0 */
+} asp_law_result;
+
+typedef struct asp_laws_options {
+    size_t   samples;       /* per chi-square test, [1000, 1e8]; the others scale with its root */
+    uint64_t seed;          /* the same seed, the same findings */
+    const char *only;       /* the name of one law, or NULL for all */
+    asp_progress *progress; /* may be NULL */
+    void    *context;       /* of progress */
+} asp_laws_options;
+
+/* 100,000 samples, seed 1, all laws, no progress. */
+asp_laws_options asp_laws_options_default(void);
+
+/* Called once per law. The result is valid during the call. */
+typedef void asp_law_report(void *context, const asp_law_result *result);
+
+/* Checks one distribution; about half a second with the default options. options and report may be
+ * NULL; failed (may be NULL) is the number of laws broken. ASP_OK also when laws are broken.
+ * ASP_EINVAL (samples), ASP_EUNKNOWN (only), ASP_ENOMEM, ASP_ECANCELLED. */
+asp_status asp_laws_check(const asp_ndf *ndf, const asp_laws_options *options,
+                          asp_law_report *report, void *context, size_t *failed, asp_error *err);
+
+/* Representative values of a model: its parameters over their range (near the ends, in the middle,
+ * infinite where allowed) times slope maps (isotropic from alpha 1e-3 to 4, anisotropic, rotated,
+ * correlated, skewed up to mean slope 2). Writes spec number `index` and returns 1; returns 0 past
+ * the last one or when size is too small (256 is enough). */
+int asp_laws_spec(const asp_model *model, size_t index, char *spec, size_t size);
 
 #ifdef __cplusplus
 }
