@@ -101,8 +101,9 @@ int cmd_ndf(const cmd_args *args, const char *option, size_t index, asp_ndf *out
 int cmd_material(const cmd_args *args, const char *option, size_t index, asp_material *out);
 int cmd_direction(const cmd_args *args, const char *option, asp_vec3 *out);
 int cmd_mask(const cmd_args *args, const char *option, int *out);
-/* The one surface of a record with the options ndf, material and mask: --material, or the perfect
- * mirror facets of --ndf; --mask overrules the material's. */
+/* The same for the options ndf, material and mask of one record: a material, or the perfect mirror
+ * facets of a distribution; --mask overrules the material's. cmd_surface: there must be just one. */
+int cmd_surface_at(const cmd_args *args, const char *option, size_t index, asp_material *out);
 int cmd_surface(const cmd_args *args, asp_material *out);
 
 /* ------------------------------------------------------------------ saying what is wrong

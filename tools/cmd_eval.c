@@ -1,5 +1,6 @@
 /* cmd_eval.c - one more column: a quantity at the directions of each row */
 #include "csv.h"
+#include "precision.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -66,8 +67,6 @@ static const struct quantity { const char *name; int needs; } quantities[QUANTIT
         case Q_PDF_BRDF:    N_##S(asp_pdf)(&MATERIAL, n, wi, wo, b->out[0]); break;                \
         }                                                                                          \
     }
-#define N_64(name) name##_n
-#define N_32(name) name##_nf
 DEFINE_EVALUATE(64, work->material, asp_cvec3s, asp_rgbs)
 DEFINE_EVALUATE(32, work->materialf, asp_cvec3sf, asp_rgbsf)
 

@@ -71,24 +71,30 @@ int cmd_direction(const cmd_args *args, const char *option, asp_vec3 *out)
     return CMD_OK;
 }
 
-int cmd_surface(const cmd_args *args, asp_material *out)
+int cmd_surface_at(const cmd_args *args, const char *option, size_t index, asp_material *out)
 {
     int mask = 0, status = CMD_OK;
-    size_t ndfs = cmd_given(args, "ndf"), materials = cmd_given(args, "material");
-    if (ndfs + materials != 1)
-        return cmd_usage("%s: give --ndf SPEC or --material SPEC",
-                         ndfs + materials ? "both --ndf and --material" : "no surface");
     if (cmd_given(args, "mask"))
         status = cmd_mask(args, "mask", &mask);
-    if (status == CMD_OK && ndfs) {
+    if (status == CMD_OK && strcmp(option, "ndf") == 0) {
         asp_ndf ndf;
-        status = cmd_ndf(args, "ndf", 0, &ndf);
+        status = cmd_ndf(args, option, index, &ndf);
         if (status == CMD_OK)
             *out = asp_mirror(&ndf, mask);
     } else if (status == CMD_OK) {
-        status = cmd_material(args, "material", 0, out);
+        status = cmd_material(args, option, index, out);
         if (status == CMD_OK && cmd_given(args, "mask"))
             out->mask = mask;
     }
     return status;
+}
+
+int cmd_surface(const cmd_args *args, asp_material *out)
+{
+    size_t ndfs = cmd_given(args, "ndf"), materials = cmd_given(args, "material");
+    if (ndfs + materials == 0)
+        return cmd_usage("no surface: give --ndf SPEC or --material SPEC");
+    if (ndfs + materials > 1)
+        return cmd_usage("--ndf and --material: only one of them, once");
+    return cmd_surface_at(args, ndfs ? "ndf" : "material", 0, out);
 }

@@ -1,0 +1,114 @@
+/* cmd_render.c - a lit sphere of a material, a model or a measurement */
+#include "cmd.h"
+
+#include <string.h>
+
+static asp_rgb measured(const void *context, asp_vec3 wi, asp_vec3 wo)
+{
+    return asp_measured_eval(context, wi, wo);
+}
+
+/* Refused before the rendering rather than after it. */
+static int check_name(const char *path)
+{
+    static const char *const known[] = { ".png", ".exr", ".pfm" };
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot && i < sizeof known / sizeof *known; i++) {
+        size_t j = 0;
+        while (dot[j] && (dot[j] | 32) == (known[i][j] | 32))
+            j++;
+        if (!dot[j] && !known[i][j])
+            return CMD_OK;
+    }
+    return cmd_usage("--output %s: the name must end in .png, .exr or .pfm", path);
+}
+
+static int render(const cmd_args *args, asp_preview *look)
+{
+    asp_error err;
+    asp_image image;
+    asp_image_options form;
+    memset(&form, 0, sizeof form);
+    form.tone.exposure = cmd_number(args, "exposure");
+    form.tone.soft = cmd_number(args, "soft");
+    form.exr_float = cmd_given(args, "float") > 0;
+    cmd_progress bar = cmd_progress_begin("render");
+    look->progress = cmd_progress_show;
+    look->progress_context = &bar;
+    asp_status status = asp_preview_render(look, &image, &err);
+    cmd_progress_end(&bar);
+    if (status != ASP_OK)
+        return cmd_error(&err);
+    cmd_hold();
+    status = asp_image_write(&image, cmd_text(args, "output"), &form, &err);
+    cmd_release();
+    asp_image_free(&image);
+    return status == ASP_OK ? CMD_OK : cmd_error(&err);
+}
+
+static int run(const cmd_args *args)
+{
+    asp_error err;
+    asp_material material;
+    asp_measured *data = NULL;
+    asp_environment environment = cmd_choice(args, "env") ? asp_environment_furnace(1)
+                                                          : asp_environment_studio();
+    asp_preview look;
+    int status = check_name(cmd_text(args, "output"));
+    memset(&look, 0, sizeof look);
+    look.environment = &environment;
+    look.width = look.height = (int)cmd_integer(args, "size");
+    look.samples = (int)cmd_integer(args, "spp");
+    look.seed = (uint32_t)cmd_integer(args, "seed");
+    look.threads = (int)cmd_integer(args, "threads");
+    look.field_of_view = 0;
+    if (status != CMD_OK)
+        return status;
+    if (cmd_given(args, "data")) {
+        if (cmd_given(args, "ndf") || cmd_given(args, "material"))
+            return cmd_usage("--data does not go with --ndf or --material");
+        data = asp_measured_read(cmd_text(args, "data"), &err);
+        if (!data)
+            return cmd_error(&err);
+        look.function = measured;
+        look.context = data;
+    } else {
+        status = cmd_surface(args, &material);
+        look.material = &material;
+    }
+    if (status == CMD_OK)
+        status = render(args, &look);
+    asp_measured_free(data);
+    return status;
+}
+
+static const cmd_option options[] = {
+    { "output", 'o', "FILE", CMD_TEXT, .required = 1,
+      .help = "the picture: .png (8 bits, sRGB), .exr or .pfm (linear)" },
+    { "material", 0, "SPEC", CMD_TEXT, .help = "the material" },
+    { "ndf", 0, "SPEC", CMD_TEXT, .help = "or a distribution of perfect mirror facets" },
+    { "mask", 0, "NAME", CMD_TEXT, .help = "masking, as in `asperity list`" },
+    { "data", 0, "FILE", CMD_TEXT, .help = "or a measurement, of any format of `asperity list`" },
+    { "size", 0, "N", CMD_INTEGER, 1, 16384, .initial = "512", .help = "pixels along a side" },
+    { "spp", 0, "N", CMD_INTEGER, 1, 65536, .initial = "64", .help = "samples per pixel" },
+    { "env", 0, "studio|furnace", CMD_CHOICE, .initial = "studio",
+      .help = "the light: a studio, or radiance 1 from everywhere, in which a surface that loses "
+              "nothing disappears" },
+    { "exposure", 0, "STOPS", CMD_NUMBER, -64, 64, .initial = "0", .help = "of the .png" },
+    { "soft", 0, "X", CMD_NUMBER, 0, 1, .initial = "0.4",
+      .help = "how much of the top of the .png's range rolls off highlights" },
+    { "float", 0, NULL, CMD_FLAG, .help = "32-bit numbers in the .exr instead of 16-bit" },
+    { "seed", 's', "N", CMD_INTEGER, 0, 4294967295.0, .initial = "0", .help = "of the noise" },
+    { "threads", 0, "N", CMD_INTEGER, 0, 256, .initial = "0",
+      .help = "0: as many as processors; the picture does not depend on it" },
+    CMD_END
+};
+
+const cmd_record cmd_render = {
+    "render", "render a lit sphere of a material or a measurement", "", 0, 0,
+    "  asperity render --material 'conductor:metal=Au,ndf=(ggx:alpha=0.2)' -o gold.png\n"
+    "  asperity render --data chm_orange_rgb.bsdf -o orange.png\n"
+    "\n"
+    "Shows a bar with the time left when standard error is a terminal.",
+    options, run
+};
