@@ -16,7 +16,9 @@
 #include <stdint.h>
 #include <string.h>
 
-#if defined(__CUDACC__) || defined(__CUDA__)
+#if defined(__clang__) && defined(__CUDA__)
+#define ASP_FN static __attribute__((host)) __attribute__((device)) inline
+#elif defined(__CUDACC__)
 #define ASP_FN static __host__ __device__ inline
 #elif defined(__GNUC__)
 #define ASP_FN static inline __attribute__((always_inline, unused))
