@@ -28,8 +28,10 @@ static double share(const asp_law_result *r)
 static void note(void *context, const asp_law_result *result)
 {
     group *g = context;
-    size_t count, i = (size_t)(result->law - asp_laws(&count));
-    if (i >= LAWS || i >= count || !result->checks)
+    size_t i = 0;
+    while (i < g->law_count && asp_laws(i) != result->law)
+        i++;
+    if (i == g->law_count || !result->checks)
         return;
     tally *t = &g->laws[i];
     int worse = !t->seen || (t->worst.passed && !result->passed)
@@ -105,7 +107,7 @@ static void print_group(const group *g)
     printf("\n  %-14s %10s %11s %11s  %-14s\n", "law", "checks", "worst", "allowed", "unit");
     for (size_t i = 0; i < g->law_count; i++) {
         const tally *t = &g->laws[i];
-        const asp_law *law = asp_laws(NULL) + i;
+        const asp_law *law = asp_laws(i);
         if (!t->seen)
             continue;
         printf("  %-14s %10zu %11.3g %11.3g  %-14s %s\n", law->name, t->checks, t->worst.worst,
@@ -123,11 +125,11 @@ static json_t *group_json(const group *g)
         const tally *t = &g->laws[i];
         if (t->seen)
             json_array_append_new(laws, json_pack(
-                "{s:s, s:b, s:I, s:I, s:o, s:f, s:s, s:s, s:s}", "law", asp_laws(NULL)[i].name,
+                "{s:s, s:b, s:I, s:I, s:o, s:f, s:s, s:s, s:s}", "law", asp_laws(i)->name,
                 "holds", !t->failed, "broken_for", (json_int_t)t->failed, "checks",
                 (json_int_t)t->checks, "worst", t->worst.worst < 1e300
                 ? json_real(t->worst.worst) : json_string("inf"), "allowed", t->worst.allowed,
-                "unit", asp_laws(NULL)[i].unit, "spec", t->spec, "where", t->worst.where));
+                "unit", asp_laws(i)->unit, "spec", t->spec, "where", t->worst.where));
     }
     return json_pack("{s:s, s:I, s:b, s:o}", "distribution", g->title, "sets",
                      (json_int_t)g->spec_count, "holds", failures(g) == 0, "laws", laws);
@@ -138,14 +140,12 @@ static json_t *group_json(const group *g)
 static int read_options(const cmd_args *args, asp_laws_options *how, const asp_model **only)
 {
     const char *names[64] = { NULL }, *model = cmd_text(args, "model");
-    size_t count;
-    const asp_law *laws = asp_laws(&count);
     *how = asp_laws_options_default();
     how->samples = (size_t)cmd_integer(args, "samples");
     how->seed = (uint64_t)cmd_integer(args, "seed");
     how->only = cmd_text(args, "law");
-    for (size_t i = 0; i < count && i < 63; i++)
-        names[i] = laws[i].name;
+    for (size_t i = 0; asp_laws(i) && i < 63; i++)
+        names[i] = asp_laws(i)->name;
     if (how->only && cmd_find(how->only, names) < 0)
         return cmd_unknown("unknown law", how->only, names);
     memset(names, 0, sizeof names);
@@ -173,11 +173,12 @@ static int finish_group(const group *g, json_t *list, size_t *failed)
 static int check_all(const cmd_args *args, asp_laws_options *how, const asp_model *only,
                      json_t *list, size_t *failed)
 {
-    size_t operands = cmd_operand_count(args), law_count;
+    size_t operands = cmd_operand_count(args), law_count = 0;
     progress p = { cmd_progress_begin("check"), 0, 0 };
     group *g = malloc(sizeof *g);
     int status = g ? CMD_OK : cmd_failed("out of memory");
-    asp_laws(&law_count);
+    while (law_count < LAWS && asp_laws(law_count))
+        law_count++;
     p.all = operands;
     for (const asp_model *const *m = asp_models(); !operands && *m; m++)
         p.all += !only || only == *m ? spec_count(*m) : 0;
@@ -188,7 +189,7 @@ static int check_all(const cmd_args *args, asp_laws_options *how, const asp_mode
         if (model && only && model != only)
             continue;
         memset(g, 0, sizeof *g);
-        g->law_count = law_count < LAWS ? law_count : LAWS;
+        g->law_count = law_count;
         g->title = operands ? cmd_operand(args, i) : model->name;
         status = operands ? check_spec(g->title, how, &p, g) : check_model(model, how, &p, g);
         cmd_progress_end(&p.bar);
@@ -204,7 +205,7 @@ static int check_all(const cmd_args *args, asp_laws_options *how, const asp_mode
 static int run(const cmd_args *args)
 {
     asp_laws_options how;
-    const asp_model *only;
+    const asp_model *only = NULL;
     size_t failed = 0;
     json_t *list = cmd_given(args, "json") ? json_array() : NULL;
     int status = read_options(args, &how, &only);

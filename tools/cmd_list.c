@@ -140,13 +140,12 @@ static json_t *losses(void)
 
 static json_t *laws(void)
 {
-    size_t count;
-    const asp_law *law = asp_laws(&count);
+    const asp_law *law;
     json_t *list = json_array();
-    for (size_t i = 0; i < count; i++)
-        json_array_append_new(list, json_pack("{s:s, s:s, s:s, s:s}", "name", law[i].name, "title",
-                                              law[i].says, "source", law[i].source, "unit",
-                                              law[i].unit));
+    for (size_t i = 0; (law = asp_laws(i)) != NULL; i++)
+        json_array_append_new(list, json_pack("{s:s, s:s, s:s, s:s}", "name", law->name, "title",
+                                              law->says, "source", law->source, "unit",
+                                              law->unit));
     return list;
 }
 
