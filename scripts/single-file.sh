@@ -8,5 +8,5 @@ cat <<'END'
  * -ffp-contract=off -O3 to get the speed and the bits of the library. */
 END
 for f in core/*.c bsdf/*.c ndf/*.c; do
-    echo "#include \"$f\""
+    printf '#include "%s"\n#undef ASP_PRECISION\n' "$f"
 done

@@ -1,0 +1,92 @@
+#!/bin/sh
+# docs.sh [--check] [BUILD] - writes again everything in the tree that a command produces, or, with
+# --check, changes nothing and fails with the difference where something is stale.
+#
+# In a page, what stands between these two lines is the output of the command:
+#     <!-- $ build/asperity list -->
+#     <!-- end -->
+# Whole files that are produced are listed at the end of this script.
+set -eu
+cd "$(dirname "$0")/.."
+check=0
+[ "${1:-}" != --check ] || { check=1; shift; }
+build=$(cd "${1:-build}" && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+# pages name the command as a reader would type it after `make`
+mkdir "$scratch/bin"
+ln -s "$build/asperity" "$scratch/bin/asperity"
+PATH=$scratch/bin:$PATH
+stale=0
+
+# put FILE NEW: NEW becomes FILE, or is compared with it
+put() {
+    if cmp -s "$1" "$2"; then
+        return 0
+    fi
+    if [ $check = 1 ]; then
+        stale=$((stale + 1))
+        echo "stale: $1"
+        case $1 in
+        *.png) ;;
+        *) diff -u "$1" "$2" | cut -c 1-200 | head -n 40 || true ;;
+        esac
+    else
+        mkdir -p "$(dirname "$1")"
+        cp "$2" "$1"
+        echo "wrote $1"
+    fi
+}
+
+# page FILE: runs its commands
+page() {
+    awk -v file="$1" '
+        /^<!-- \$ .* -->$/ {
+            print
+            command = substr($0, 8, length($0) - 11)
+            print "```text"
+            while ((command | getline line) > 0)
+                print line
+            print "```"
+            status = close(command)
+            if (status != 0) {
+                print file ": status " status " from: " command >"/dev/stderr"
+                failed = 1
+            }
+            skipping = 1
+            next
+        }
+        /^<!-- end -->$/ { skipping = 0 }
+        !skipping { print }
+        END {
+            if (skipping)
+                print file ": a command without its <!-- end -->" >"/dev/stderr"
+            exit failed || skipping
+        }' "$1" >"$scratch/page" || { echo "docs.sh: $1 failed" >&2; exit 1; }
+    put "$1" "$scratch/page"
+}
+
+# file FILE COMMAND...: the command's standard output is the file
+file() {
+    target=$1
+    shift
+    "$@" >"$scratch/file" || { echo "docs.sh: failed: $*" >&2; exit 1; }
+    put "$target" "$scratch/file"
+}
+
+# picture FILE COMMAND...: the command writes the file named by its last argument
+picture() {
+    target=$1
+    shift
+    out=$scratch/picture.${target##*.}
+    "$@" "$out" >"$scratch/log" 2>&1 || { cat "$scratch/log"; echo "docs.sh: failed: $*" >&2; exit 1; }
+    put "$target" "$out"
+}
+
+for p in README.md docs/*.md; do
+    page "$p"
+done
+file src/asperity_core.c scripts/single-file.sh
+file docs/commands.md asperity help --markdown
+
+[ $stale = 0 ] || { echo "$stale stale: run make docs and commit what changed"; exit 1; }

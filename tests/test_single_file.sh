@@ -1,0 +1,40 @@
+#!/bin/sh
+# The core as one file: the list is current; cc builds it without further flags; gcc, clang and C++17
+# build it without a warning; and all of them print the same.
+set -eu
+cd "$1"
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+passed=0
+ok() { passed=$((passed + 1)); echo "ok: $*"; }
+fail() { echo "FAILED: $*"; echo "$passed passed, 1 failed"; exit 1; }
+
+scripts/single-file.sh >"$scratch/asperity_core.c"
+diff src/asperity_core.c "$scratch/asperity_core.c" || fail "src/asperity_core.c is stale: make docs"
+ok "src/asperity_core.c lists every file of the core"
+
+cc -O2 -Iinclude -Isrc -c src/asperity_core.c -o "$scratch/cc.o" || fail "cc -O2"
+ok "cc -O2 -Iinclude -Isrc -c src/asperity_core.c"
+shown=$(nm -g --defined-only "$scratch/cc.o" | awk 'NF == 3 && $3 !~ /^aspi?_/ { print $3 }')
+[ -z "$shown" ] || fail "names without a prefix: $shown"
+ok "every name that another file can see begins with asp_ or aspi_"
+
+# The library's own flags. What is not libm must not be asked for.
+flags="-O1 -Wall -Wextra -Wpedantic -Werror -fno-math-errno -fno-trapping-math -ffp-contract=off"
+for build in "gcc -std=c11" "clang -std=c11" "g++ -x c++ -std=c++17" "clang++ -x c++ -std=c++17"; do
+    # shellcheck disable=SC2086
+    $build $flags -Iinclude -Isrc -c src/asperity_core.c -o "$scratch/core.o" || fail "$build"
+    gcc -O1 -Iinclude tests/install/core.c "$scratch/core.o" -lm -o "$scratch/core" || fail "$build: link"
+    [ "$("$scratch/core")" = "sigma 0.827200187266" ] || fail "$build: $("$scratch/core")"
+    ok "$build"
+done
+for header in asperity asperity_ndf asperity_data asperity_draw; do
+    for build in "gcc -x c -std=c11" "clang -x c -std=c11" "g++ -x c++ -std=c++17" \
+                 "clang++ -x c++ -std=c++17"; do
+        # shellcheck disable=SC2086
+        echo "#include \"$header.h\"" | $build -Wall -Wextra -Wpedantic -Werror -Iinclude \
+            -fsyntax-only - || fail "$header.h alone with $build"
+    done
+done
+ok "each public header compiles alone, as C11 and C++17"
+echo "$passed passed, 0 failed"
