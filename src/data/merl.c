@@ -85,8 +85,10 @@ static side side_periodic(double position, size_t n)
     double x = position - 0.5;
     if (x < 0)
         x += (double)n;
+    if (!(x < (double)n))                /* a whisker below 0 rounds up to n */
+        x = 0;
     double cell = floor(x);
-    s.bin[0] = cell < (double)n ? (size_t)cell : n - 1;
+    s.bin[0] = (size_t)cell;
     s.bin[1] = s.bin[0] + 1 < n ? s.bin[0] + 1 : 0;
     s.weight = x - cell;
     return s;
