@@ -16,10 +16,17 @@
 #define aspi_sqrt ASP_NAME(aspi_sqrt)
 #define aspi_to_bits ASP_NAME(aspi_to_bits)
 #define aspi_from_bits ASP_NAME(aspi_from_bits)
+#define aspi_high ASP_NAME(aspi_high)
+#define aspi_product_error ASP_NAME(aspi_product_error)
 #define aspi_exp ASP_NAME(aspi_exp)
+#define aspi_exp_series ASP_NAME(aspi_exp_series)
+#define aspi_exp_less ASP_NAME(aspi_exp_less)
+#define aspi_expm1 ASP_NAME(aspi_expm1)
 #define aspi_log_parts ASP_NAME(aspi_log_parts)
 #define aspi_log ASP_NAME(aspi_log)
+#define aspi_log_near ASP_NAME(aspi_log_near)
 #define aspi_log1p ASP_NAME(aspi_log1p)
+#define aspi_log1p_sum ASP_NAME(aspi_log1p_sum)
 #define aspi_sin_cos ASP_NAME(aspi_sin_cos)
 #define aspi_sincos2pi ASP_NAME(aspi_sincos2pi)
 #define aspi_atan ASP_NAME(aspi_atan)
@@ -58,6 +65,7 @@ ASP_FN asp_real aspi_from_bits(asp_bits b)
 #define ASP_INT_SHIFT 4503599627370496.0   /* 2^52 */
 #define ASP_SIGN_BIT 0x8000000000000000u
 #define ASP_SQRT_HALF_BITS 0x3fe6a09e667f3bcdu
+#define ASP_HIGH_HALF 0xfffffffff8000000u /* sign, exponent and 26 bits */
 #define ASP_EXP_LOW (-708.0)
 #define ASP_EXP_HIGH 709.0
 #define ASP_LN2_HIGH 0x1.62e42fefa3p-1 /* ln 2 cut to 41 bits, so that k times it is exact ... */
@@ -69,6 +77,7 @@ ASP_FN asp_real aspi_from_bits(asp_bits b)
 #define ASP_INT_SHIFT 8388608.0
 #define ASP_SIGN_BIT 0x80000000u
 #define ASP_SQRT_HALF_BITS 0x3f3504f3u
+#define ASP_HIGH_HALF 0xfffff000u /* sign, exponent and 12 bits */
 #define ASP_EXP_LOW (-87.0)
 #define ASP_EXP_HIGH 88.0
 #define ASP_LN2_HIGH 0x1.62ep-1
@@ -89,17 +98,25 @@ ASP_FN asp_real aspi_sqrt(asp_real x)
 #endif
 }
 
-/* e^x = 2^k e^r, |r| <= ln(2)/2. 0 below ASP_EXP_LOW (no subnormal results), e^ASP_EXP_HIGH above
- * ASP_EXP_HIGH: a kernel's exponent is bounded above by construction. */
-ASP_FN asp_real aspi_exp(asp_real x)
+/* The upper half of the significand: x - aspi_high(x) is exact, and so is the product of two upper
+ * halves (Dekker 1971; cut instead of rounded). */
+ASP_FN asp_real aspi_high(asp_real x)
 {
-    asp_real y = x > R(ASP_EXP_LOW) ? x : R(ASP_EXP_LOW);
-    asp_real z = y < R(ASP_EXP_HIGH) ? y : R(ASP_EXP_HIGH);
-    asp_real shifted = z * R(1.44269504088896340736) + R(ASP_ROUND_SHIFT);
-    asp_real k = shifted - R(ASP_ROUND_SHIFT);
-    asp_real r = (z - k * R(ASP_LN2_HIGH)) - k * R(ASP_LN2_LOW);
-    asp_real p, scale, e;
-    asp_bits low;
+    return aspi_from_bits(aspi_to_bits(x) & (asp_bits)ASP_HIGH_HALF);
+}
+
+/* a b - p for p = a b rounded, without a fused multiply-add. */
+ASP_FN asp_real aspi_product_error(asp_real a, asp_real b, asp_real p)
+{
+    asp_real ah = aspi_high(a), bh = aspi_high(b);
+    asp_real al = a - ah, bl = b - bh;
+    return ((ah * bh - p) + (ah * bl + al * bh)) + al * bl;
+}
+
+/* (e^r - 1 - r) / r^2 for |r| <= ln(2)/2. */
+ASP_FN asp_real aspi_exp_series(asp_real r)
+{
+    asp_real p;
 #if ASP_PRECISION == 64
     p = R(1.0 / 6227020800.0);
     p = p * r + R(1.0 / 479001600.0);
@@ -115,13 +132,41 @@ ASP_FN asp_real aspi_exp(asp_real x)
     p = p * r + R(1.0 / 120.0);
     p = p * r + R(1.0 / 24.0);
     p = p * r + R(1.0 / 6.0);
-    p = p * r + R(0.5);
-    e = R(1.0) + (r + (r * r) * p);
+    return p * r + R(0.5);
+}
+
+/* e^(x - low), |low| much smaller than 1: e^(x - low) = 2^k e^r, |r| <= ln(2)/2. 0 for x below
+ * ASP_EXP_LOW (no subnormal results), e^ASP_EXP_HIGH above ASP_EXP_HIGH: a kernel's exponent is
+ * bounded above by construction. */
+ASP_FN asp_real aspi_exp_less(asp_real x, asp_real low)
+{
+    asp_real y = x > R(ASP_EXP_LOW) ? x : R(ASP_EXP_LOW);
+    asp_real z = y < R(ASP_EXP_HIGH) ? y : R(ASP_EXP_HIGH);
+    asp_real shifted = z * R(1.44269504088896340736) + R(ASP_ROUND_SHIFT);
+    asp_real k = shifted - R(ASP_ROUND_SHIFT);
+    asp_real r = ((z - k * R(ASP_LN2_HIGH)) - k * R(ASP_LN2_LOW)) - low;
+    asp_real e = R(1.0) + (r + (r * r) * aspi_exp_series(r));
     /* the low bits of `shifted` hold k: make 2^k of them */
-    low = aspi_to_bits(shifted);
-    scale = aspi_from_bits((asp_bits)((low + (asp_bits)ASP_EXPONENT_BIAS) << ASP_FRACTION_BITS));
+    asp_real scale = aspi_from_bits((asp_bits)((aspi_to_bits(shifted) + (asp_bits)ASP_EXPONENT_BIAS)
+                                    << ASP_FRACTION_BITS));
     e = e * scale;
     e = x < R(ASP_EXP_LOW) ? R(0.0) : e;
+    return x == x ? e : x;
+}
+
+ASP_FN asp_real aspi_exp(asp_real x) { return aspi_exp_less(x, R(0.0)); }
+
+/* e^x - 1, accurate near 0. -1 below ASP_EXP_LOW; above ASP_EXP_HIGH as aspi_exp. */
+ASP_FN asp_real aspi_expm1(asp_real x)
+{
+    asp_real y = x > R(ASP_EXP_LOW) ? x : R(ASP_EXP_LOW);
+    asp_real z = y < R(ASP_EXP_HIGH) ? y : R(ASP_EXP_HIGH);
+    asp_real shifted = z * R(1.44269504088896340736) + R(ASP_ROUND_SHIFT);
+    asp_real k = shifted - R(ASP_ROUND_SHIFT);
+    asp_real r = (z - k * R(ASP_LN2_HIGH)) - k * R(ASP_LN2_LOW);
+    asp_real scale = aspi_from_bits((asp_bits)((aspi_to_bits(shifted) + (asp_bits)ASP_EXPONENT_BIAS)
+                                    << ASP_FRACTION_BITS));
+    asp_real e = (scale - R(1.0)) + scale * (r + (r * r) * aspi_exp_series(r));
     return x == x ? e : x;
 }
 
@@ -149,9 +194,10 @@ ASP_FN asp_real aspi_log_parts(asp_real k, asp_real f)
     return k * R(ASP_LN2_HIGH) + (f - (s * (f - z * p) - k * R(ASP_LN2_LOW)));
 }
 
-/* Logarithm of a positive normal number; anything else gives an unspecified finite number, and a
- * NaN gives a NaN. */
-ASP_FN asp_real aspi_log(asp_real x)
+/* log x for a caller who knows x - 1 better than x: x_less_1 replaces it for x within [sqrt(1/2),
+ * sqrt(2)), where the logarithm's zero lies. x positive and normal; anything else gives an
+ * unspecified finite number, and a NaN gives a NaN. */
+ASP_FN asp_real aspi_log_near(asp_real x, asp_real x_less_1)
 {
     /* exponent field of x / sqrt(1/2): the mantissa then lies in [sqrt(1/2), sqrt(2)) */
     asp_bits b = aspi_to_bits(x);
@@ -160,9 +206,12 @@ ASP_FN asp_real aspi_log(asp_real x)
     asp_real k = aspi_from_bits(biased | aspi_to_bits(R(ASP_INT_SHIFT)))
                - R(ASP_INT_SHIFT + ASP_EXPONENT_BIAS);
     asp_bits m = (asp_bits)(b - ((asp_bits)(biased - (asp_bits)ASP_EXPONENT_BIAS) << ASP_FRACTION_BITS));
-    asp_real y = aspi_log_parts(k, aspi_from_bits(m) - R(1.0));
+    asp_real f = aspi_from_bits(m) - R(1.0);
+    asp_real y = aspi_log_parts(k, k == R(0.0) ? x_less_1 : f);
     return x == x ? y : x;
 }
+
+ASP_FN asp_real aspi_log(asp_real x) { return aspi_log_near(x, x - R(1.0)); }
 
 /* log(1 + x) for x > -1, finite and below the square root of the largest number. What 1 + x rounds
  * away is given back to f before the series, so that the relative error stays small near 0. */
@@ -181,6 +230,51 @@ ASP_FN asp_real aspi_log1p(asp_real x)
     asp_real f = (aspi_from_bits((asp_bits)(b - shift)) - R(1.0)) + lost * scale;
     asp_real y = aspi_log_parts(k, f);
     return x == x ? y : x;
+}
+
+/* log(1 + x + low) as the sum .x + .y, |low| at most an ulp of x >= 0: about twice as many bits as
+ * one number holds where the logarithm is large, for exponents that multiply it. */
+ASP_FN asp_v2 aspi_log1p_sum(asp_real x, asp_real low)
+{
+    asp_real u = R(1.0) + x;
+    asp_real lost = u < R(2.0) ? x - (u - R(1.0)) : R(1.0) - (u - x);
+    asp_bits b = aspi_to_bits(u);
+    asp_bits biased = (asp_bits)(b - (asp_bits)ASP_SQRT_HALF_BITS
+                      + ((asp_bits)ASP_EXPONENT_BIAS << ASP_FRACTION_BITS)) >> ASP_FRACTION_BITS;
+    asp_real k = aspi_from_bits(biased | aspi_to_bits(R(ASP_INT_SHIFT)))
+               - R(ASP_INT_SHIFT + ASP_EXPONENT_BIAS);
+    asp_bits shift = (asp_bits)(biased - (asp_bits)ASP_EXPONENT_BIAS) << ASP_FRACTION_BITS;
+    asp_real scale = aspi_from_bits((asp_bits)(aspi_to_bits(R(1.0)) - shift));
+    asp_real f0 = aspi_from_bits((asp_bits)(b - shift)) - R(1.0);
+    asp_real add = lost * scale;
+    asp_real f = f0 + add;
+    asp_real f_low = (add - (f - f0)) + low * scale;
+    /* log(1 + f) = f - t, t = s (f - z p) as in aspi_log_parts */
+    asp_real s = f / (R(2.0) + f);
+    asp_real z = s * s;
+    asp_real p, t, a, kh;
+    asp_v2 out;
+#if ASP_PRECISION == 64
+    p = R(2.0 / 21.0);
+    p = p * z + R(2.0 / 19.0);
+    p = p * z + R(2.0 / 17.0);
+    p = p * z + R(2.0 / 15.0);
+    p = p * z + R(2.0 / 13.0);
+    p = p * z + R(2.0 / 11.0);
+    p = p * z + R(2.0 / 9.0);
+#else
+    p = R(2.0 / 9.0);
+#endif
+    p = p * z + R(2.0 / 7.0);
+    p = p * z + R(2.0 / 5.0);
+    p = p * z + R(2.0 / 3.0);
+    t = s * (f - z * p);
+    a = f - t;
+    kh = k * R(ASP_LN2_HIGH);
+    out.x = kh + a;
+    /* what the two additions rounded away, ln 2's tail, and f_low / (1 + f) */
+    out.y = (((kh - out.x) + a) + ((f - a) - t)) + (k * R(ASP_LN2_LOW) + f_low * (R(1.0) - (s + s)));
+    return out;
 }
 
 /* sine and cosine of x, |x| <= pi/4, as .x = cos, .y = sin. */
@@ -260,6 +354,7 @@ ASP_FN asp_real aspi_atan(asp_real y, asp_real x)
 #undef ASP_ROUND_SHIFT
 #undef ASP_INT_SHIFT
 #undef ASP_SIGN_BIT
+#undef ASP_HIGH_HALF
 #undef ASP_SQRT_HALF_BITS
 #undef ASP_EXP_LOW
 #undef ASP_EXP_HIGH

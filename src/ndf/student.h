@@ -1,0 +1,54 @@
+/* student.h - what the Student-t family shares: the layout of its tables and their preparation
+ *
+ * The standard surface has slopes of density (1 + r^2/n)^-gamma / pi, n = gamma - 1 (Ribardiere et
+ * al. 2017, eq. 6 with sigma = 1); n -> infinity is Beckmann's e^-r^2 / pi. Marginal along one
+ * axis: P2(q) proportional to (1 + q^2/n)^(-n - 1/2). With M(x) = int_x^inf q P2 dq and
+ * T(x) = int_x^inf P2 dq, both of one elementary factor and one smooth one, x >= 0:
+ *
+ *     g = sqrt(1 + x^2/n),  d = a / (x/g + a)  in (0, 1],  a = 2
+ *     M(x) = M0 g^(1 - 2n)
+ *     T(x) = T0 g^(-2n) d B(d)
+ *     J(x) = M(x) - x T(x) = M0 g^(1 - 2n) d^2 P(d)      the projected area of the far side
+ *
+ * P and B are analytic and of one sign on [0, 1] (their nearest singularity is at x/g = -sqrt n,
+ * the far side of the pole d), so that short polynomials carry them: `table` holds these, once per
+ * precision. Exact values: one hypergeometric function, theory in docs/student-t.md. */
+#ifndef ASPI_STUDENT_H
+#define ASPI_STUDENT_H
+
+#include "asperity_ndf.h"
+
+/* Where things lie in asp_ndf.table. A number that multiplies an exponent is kept twice: whole, and
+ * as an upper part of 12 bits plus the rest, which float32 needs for products without rounding. */
+enum {
+    STUDENT_INVN = 0,            /* 1/n, upper, rest */
+    STUDENT_GAMMA = 3,           /* gamma, upper, rest */
+    STUDENT_N = 6,               /* n, upper, rest */
+    STUDENT_M0 = 9,
+    STUDENT_T0 = 10,
+    STUDENT_SCALE = 11,          /* d scale + offset runs over [-1, 1] */
+    STUDENT_OFFSET = 12,
+    /* the conditional distribution across the view: the same family at n + 1/2 */
+    STUDENT_Y_T0 = 13,
+    STUDENT_Y_SCALE = 14,
+    STUDENT_Y_OFFSET = 15,
+    STUDENT_Y_N = 16,
+    STUDENT_Y_INVN = 17,
+    STUDENT_Y_WIDTH = 18,        /* sqrt(n/(n + 1/2)) */
+    STUDENT_P32 = 32,            /* 14 coefficients of P for float32 ... */
+    STUDENT_B32 = 46,            /* ... 12 of B */
+    STUDENT_P64 = 64,            /* 24 of P for float64 ... */
+    STUDENT_B64 = 88,            /* ... 24 of B */
+    STUDENT_Y32 = 112,           /* B of n + 1/2: 12 ... */
+    STUDENT_Y64 = 124            /* ... 24 */
+};
+
+#define STUDENT_A 2.0
+
+/* Fills out->table for n > 1/2, infinity included. */
+void aspi_student_prepare(asp_ndf *out, double n);
+
+/* Gamma(n + 1/2) / (Gamma(n) sqrt n), n > 0. */
+double aspi_gamma_ratio(double n);
+
+#endif
