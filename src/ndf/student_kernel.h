@@ -170,7 +170,7 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
     asp_real uu = aspi_max(u1, ASP_PRECISION == 64 ? R(1e-30) : R(1e-12));
     asp_real left = uu * sigma;
     asp_real right = (R(1.0) - uu) * sigma;
-    int is_left = left <= start;
+    int is_left = (left <= start) | (c < R(0.0));
     asp_real eps = is_left ? R(1.0) : R(-1.0);
     asp_real t0 = is_left ? -left : far - right;
     asp_real lo = R(0.0), hi = R(10.0), hy = hi;
@@ -187,6 +187,8 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
         f = c * student_side(k, q, p) + eps * sn * m0 * aspi_exp(-beta * q) + t0;
         if (!is_left && p.x * sn > c * p.y)
             f = R(-1.0);
+        if (p.x * sn < -c * p.y)
+            f = R(1.0);
         lo = f > R(0.0) ? mid : lo;
         hi = f > R(0.0) ? hi : mid;
     }
