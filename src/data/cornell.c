@@ -145,7 +145,7 @@ static asp_status read_row(numbers *n, aspi_list *list, int *done, asp_error *er
     static const char *const name[4] = { "theta_i", "phi_i", "theta_o", "phi_o" };
     double angle[4], rgb[3] = { 0, 0, 0 }, value;
     for (int i = 0; i < 4; i++) {
-        double high = i % 2 ? 4 * ASPI_PI : ASPI_PI / 2 * (1 + 1e-6);
+        double high = i % 2 ? 4 * ASPI_PI : ASPI_PI / 2;
         int got = next_number(n, name[i], &angle[i], err);
         if (got < 0)
             return ASP_EPARSE;
@@ -153,7 +153,7 @@ static asp_status read_row(numbers *n, aspi_list *list, int *done, asp_error *er
             *done = 1;
             return i ? fail_end(n, name[i], err) : ASP_OK;
         }
-        if (fabs(angle[i]) > high)
+        if (fabs(angle[i]) > high * (1 + 1e-6))
             return fail_number(n, name[i], angle[i], -high, high, err);
     }
     for (int i = 0; i < BANDS; i++) {

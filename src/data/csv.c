@@ -23,7 +23,7 @@ typedef struct row { double value[ASPI_ROLES]; aspi_word word[64]; long long lin
 /* The allowed range of each kind of column, in radians. */
 static void range_of(aspi_role role, double *low, double *high)
 {
-    double right = ASPI_PI / 2 * (1 + 1e-6);       /* 90 deg in a file may be 1.570797 */
+    const double right = ASPI_PI / 2;
     *low = -1e26;
     *high = 1e26;
     switch (role) {
@@ -37,7 +37,7 @@ static void range_of(aspi_role role, double *low, double *high)
     case ASPI_INDEX_D: *low = 0; *high = ASPI_MERL_D - 1; break;
     case ASPI_INDEX_P: *low = 0; *high = ASPI_MERL_P - 1; break;
     case ASPI_WI_X: case ASPI_WI_Y: case ASPI_WI_Z:
-    case ASPI_WO_X: case ASPI_WO_Y: case ASPI_WO_Z: *low = -1.001; *high = 1.001; break;
+    case ASPI_WO_X: case ASPI_WO_Y: case ASPI_WO_Z: *low = -1; *high = 1; break;
     default: break;
     }
 }
@@ -88,7 +88,8 @@ static asp_status parse_row(const aspi_bytes *file, aspi_line line, const aspi_h
         if (whole && r->value[i] != floor(r->value[i]))
             return aspi_fail_line(err, ASP_EPARSE, file->name, line.number, h->name[i],
                                   "a bin number must be whole");
-        if (r->value[i] < low || r->value[i] > high)
+        double slack = whole ? 0 : 1e-6 * high;         /* 90 deg may be written 1.570797 */
+        if (r->value[i] < low - slack || r->value[i] > high + slack)
             return fail_range(file, r, h, (aspi_role)i, low, high, err);
     }
     return ASP_OK;
