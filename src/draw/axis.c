@@ -126,6 +126,11 @@ static void set_linear(aspi_axis *out, const asp_axis *axis, int round, double l
             out->low = 0;
         out->low = step * floor(out->low / step + 1e-6);
         out->high = step * ceil(out->high / step - 1e-6);
+    } else if (!is_set(axis)) {             /* 0.5 to 89.5 degrees reads better as 0 to 90 */
+        double near = 0.02 * (out->high - out->low);
+        double low = step * floor(out->low / step + 1e-6), high = step * ceil(out->high / step - 1e-6);
+        out->low = out->low - low <= near ? low : out->low;
+        out->high = high - out->high <= near ? high : out->high;
     }
     linear_ticks(out, step);
 }

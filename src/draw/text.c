@@ -199,7 +199,8 @@ void aspi_text_label(aspi_text *text, const char *label, double x, double y, dou
                      aspi_anchor anchor, double turn, const char *attributes)
 {
     static const char *const anchors[] = { "start", "middle", "end" };
-    aspi_text_put(text, "<text x=\"%n\" y=\"%n\" font-size=\"%n\" text-anchor=\"%s\"", x, y, size,
+    aspi_text_put(text, "<text xml:space=\"preserve\" x=\"%n\" y=\"%n\" font-size=\"%n\" "
+                  "text-anchor=\"%s\"", x, y, size,
                   anchors[anchor]);
     if (turn != 0)
         aspi_text_put(text, " transform=\"rotate(%n %n %n)\"", turn, x, y);
@@ -243,7 +244,7 @@ double aspi_label_width(const char *label, double size)
             double advance = c < 127 ? helvetica[c - 32] : c < 0x2e80 ? 600 : 1000;
             width += advance * (level ? SCRIPT : 1);
         }
-    return 1.05 * width * size / 1000;   /* the fonts that stand in for Helvetica run wider */
+    return 1.16 * width * size / 1000;   /* DejaVu Sans, which may stand in, runs wider */
 }
 
 /* ------------------------------------------------------------------ the frame */
