@@ -124,6 +124,8 @@ int cmd_error(const asp_error *err);              /* asp_error_text; returns CMD
 
 /* `unknown WHAT 'name'; did you mean 'x'? known: a, b, c`. names ends with NULL. CMD_USAGE. */
 int cmd_unknown(const char *what, const char *name, const char *const *names);
+/* The name that was meant, if a slip or two lie between; NULL if none. */
+const char *cmd_nearest(const char *name, const char *const *names);
 /* The index of name in names, or -1 (nothing printed). */
 int cmd_find(const char *name, const char *const *names);
 
@@ -135,6 +137,9 @@ int cmd_find(const char *name, const char *const *names);
 
 void cmd_hold(void);
 void cmd_release(void);
+
+/* Before long work: can a file be written there? CMD_OK, or the error printed and CMD_FAILED. */
+int cmd_out_check(const char *path);
 
 /* A file that is written over a longer time, under a temporary name. `path` NULL or "-": standard
  * output. CMD_OK, or the error printed and CMD_FAILED. */

@@ -72,7 +72,8 @@ static int run(const cmd_args *args)
     const format *to = choose(args, path);
     if (!to)
         return cmd_usage("%s: the name must end in .binary, .merl or .csv, or give --to", path);
-    asp_measured *data = source(args, modelled, &status);
+    status = cmd_out_check(path);
+    asp_measured *data = status == CMD_OK ? source(args, modelled, &status) : NULL;
     if (!data)
         return status;
     cmd_hold();

@@ -133,6 +133,8 @@ static void lobe_curve(const picture *p, const struct quantity *q, const surface
              p->azimuth, (q->form & WITH_COSINE) != 0, POINTS, x, y);
     for (int i = 0; i < POINTS && !(q->form & POLAR); i++)
         x[i] /= degree;
+    if (!(q->form & WITH_COSINE))            /* f ends above the horizon, it does not fall to 0 */
+        y[0] = y[POINTS - 1] = NAN;
     add_curve(p, to, s, incidence);
 }
 
@@ -206,6 +208,8 @@ static void write_numbers(const struct quantity *q, const curves *from, cmd_out 
             char text[2 * ASPI_NUMBER_TEXT + 4];
             double x = from->x[i][j] / (q->form & POLAR ? degree : 1);
             size_t used = 0;
+            if (isnan(from->y[i][j]))
+                continue;
             cmd_out_write(out, q->name, strlen(q->name));
             cmd_out_write(out, ",", 1);
             quoted(from->label[i], out);

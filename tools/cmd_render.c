@@ -77,6 +77,8 @@ static int run(const cmd_args *args)
         look.material = &material;
     }
     if (status == CMD_OK)
+        status = cmd_out_check(cmd_text(args, "output"));
+    if (status == CMD_OK)
         status = render(args, &look);
     asp_measured_free(data);
     return status;

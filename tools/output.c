@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -65,22 +66,28 @@ static size_t distance(const char *a, const char *b)
     return row[nb];
 }
 
-int cmd_unknown(const char *what, const char *name, const char *const *names)
+const char *cmd_nearest(const char *name, const char *const *names)
 {
     const char *nearest = NULL;
     size_t best = 3;                       /* further apart is another word, not a slip */
-    char known[1024] = "";
-    size_t used = 0;
     for (; *names; names++) {
         size_t d = distance(name, *names);
         if (d < best && d < strlen(*names)) {
             best = d;
             nearest = *names;
         }
-        if (used < sizeof known - 1)
-            used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "",
-                                     *names);
     }
+    return nearest;
+}
+
+int cmd_unknown(const char *what, const char *name, const char *const *names)
+{
+    const char *nearest = cmd_nearest(name, names);
+    char known[1024] = "";
+    size_t used = 0;
+    for (; *names && used < sizeof known - 1; names++)
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "",
+                                 *names);
     if (nearest)
         return cmd_usage("%s '%s'; did you mean '%s'? known: %s", what, name, nearest, known);
     return cmd_usage("%s '%s'; known: %s", what, name, known);
@@ -101,6 +108,7 @@ int cmd_find(const char *name, const char *const *names)
 static char temporary[TEMPORARIES][sizeof ((aspi_out *)0)->temporary];
 static volatile sig_atomic_t in_use[TEMPORARIES];
 static volatile sig_atomic_t bar_shown;
+static int stdout_errno;                   /* of the first write that failed */
 
 static void on_signal(int number)
 {
@@ -143,6 +151,21 @@ void cmd_release(void) { signals_mask(SIG_UNBLOCK); }
 
 /* ------------------------------------------------------------------ files */
 
+int cmd_out_check(const char *path)
+{
+    asp_error err;
+    aspi_out out;
+    struct stat about;
+    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode))
+        return CMD_OK;                     /* opening a device or a pipe may do something already */
+    cmd_hold();
+    asp_status status = aspi_out_open(&out, path, &err);
+    if (status == ASP_OK)
+        aspi_out_abandon(&out);
+    cmd_release();
+    return status == ASP_OK ? CMD_OK : cmd_error(&err);
+}
+
 int cmd_out_open(cmd_out *out, const char *path)
 {
     asp_error err;
@@ -173,8 +196,8 @@ void cmd_out_write(cmd_out *out, const char *text, size_t size)
 {
     if (!out->standard)
         aspi_out_write(&out->out, text, size);
-    else if (!ferror(stdout))
-        fwrite(text, 1, size, stdout);
+    else if (!ferror(stdout) && fwrite(text, 1, size, stdout) != size)
+        stdout_errno = errno;
 }
 
 int cmd_out_broken(const cmd_out *out)
@@ -209,7 +232,8 @@ int frame_finish_output(void)
     errno = 0;
     if (fflush(stdout) == 0 && !ferror(stdout))
         return CMD_OK;
-    return cmd_failed("standard output: %s", strerror(errno ? errno : EIO));
+    int number = stdout_errno ? stdout_errno : errno ? errno : EIO;
+    return cmd_failed("standard output: %s", strerror(number));
 }
 
 int cmd_print_json(json_t *json)

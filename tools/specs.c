@@ -1,14 +1,44 @@
 /* specs.c - options that are distributions, materials, directions and maskings */
 #include "frame.h"
+#include "asperity_ndf.h"
+#include "core/bsdf.h"
 
 #include <math.h>
 #include <string.h>
 
-/* `--ndf ggx:alpha=-1: byte 10: alpha = -1 is outside ...` */
+/* Names of distributions, materials and metals; `at_start` leaves those that a spec begins with. */
+static void known_names(const char *option, int at_start, const char *names[128])
+{
+    size_t used = 0, metals;
+    int material = strcmp(option, "material") == 0;
+    const asp_metal *metal = asp_metals(&metals);
+    for (const asp_bsdf *const *b = asp_bsdfs(); material && *b && used < 127; b++)
+        names[used++] = (*b)->name;
+    for (const asp_model *const *m = asp_models(); (!material || !at_start) && *m && used < 127; m++)
+        names[used++] = (*m)->name;
+    for (size_t i = 0; !at_start && material && i < metals && used < 127; i++)
+        names[used++] = metal[i].name;
+    names[used] = NULL;
+}
+
+/* `--ndf ggx:alpha=-1: byte 10: alpha = -1 is outside ...`; with the name that was meant. */
 static int bad_value(const char *option, const char *text, const asp_error *err)
 {
-    char line[640];
-    return cmd_usage("--%s %s: %s", option, text, asp_error_text(err, line, sizeof line));
+    char line[640], what[700];
+    const char *names[128], *nearest = NULL;
+    asp_error_text(err, line, sizeof line);
+    if (err->status == ASP_EUNKNOWN && strcmp(option, "mask") != 0) {
+        int at_start = err->position == 0;
+        known_names(option, at_start, names);
+        if (at_start) {
+            snprintf(what, sizeof what, "--%s %s: unknown %s", option, text,
+                     strcmp(option, "ndf") ? "material" : "distribution");
+            return cmd_unknown(what, err->name, names);
+        }
+        nearest = cmd_nearest(err->name, names);
+    }
+    return cmd_usage("--%s %s: %s%s%s%s", option, text, line, nearest ? "; did you mean '" : "",
+                     nearest ? nearest : "", nearest ? "'?" : "");
 }
 
 int cmd_ndf(const cmd_args *args, const char *option, size_t index, asp_ndf *out)
