@@ -20,8 +20,8 @@ extern "C" {
 
 /* ------------------------------------------------------------------ 1  Errors as text */
 
-/* One line, e.g. `chm.bsdf: byte 4096: field 'luminance': shape says 8x8x32, file ends after 12 KB`
- * or `alpha = -1 is outside (0, 100]`. Always terminated; returns buffer. */
+/* One line, e.g. `chm.bsdf: byte 219: field 'rgb': shape says 1x8x3x32x32 at byte 559616, the file
+ * ends at byte 4096` or `alpha = -1 is outside (0, 100]`. Always terminated; returns buffer. */
 const char *asp_error_text(const asp_error *err, char *buffer, size_t size);
 
 /* ------------------------------------------------------------------ 2  Measurements */
@@ -29,22 +29,33 @@ const char *asp_error_text(const asp_error *err, char *buffer, size_t size);
 /* A measured BRDF, isotropic or anisotropic, RGB (a one-channel file fills all three). */
 typedef struct asp_measured asp_measured;
 
-/* One measured geometry. f in 1/sr without the cosine, per channel; `valid` 0 where the instrument
- * gave no value. */
+/* One measured geometry, both directions above the horizon. f in 1/sr without the cosine, per
+ * channel, not negative. */
 typedef struct asp_measurement { asp_vec3 wi, wo; asp_rgb f; } asp_measurement;
 
 typedef struct asp_measured_info {
-    const char *format;        /* "merl", "rgl", "csv" */
+    const char *format;        /* "merl", "rgl", "csv", "cornell", "lumos" */
     const char *description;   /* what the file says of itself, "" if nothing */
-    int    isotropic;          /* 1: depends on the azimuth difference only */
+    int    isotropic;          /* 1: depends on the azimuth difference only, as far as the file tells */
     int    scattered;          /* 1: only listed geometries are known (eval interpolates nothing) */
     int    channels;           /* 1 or 3 in the file */
     size_t samples;            /* stored values or geometries */
 } asp_measured_info;
 
-/* Reads a measurement; the format is recognised by content, not by name. NULL on failure with err
- * filled (file, position or line, what was expected). Allocates at most a small multiple of the
- * file's size. */
+/* Reads a measurement; the format is recognised by content, not by name:
+ *     merl      the MERL database's table of 90 x 90 x 180 bins (Matusik et al. 2003)
+ *     rgl       RGB tensor files of the RGL database, isotropic or not (Dupuy, Jakob 2018)
+ *     csv       rows of text whose columns have names: theta_i, phi_i, theta_o, phi_o in radians or
+ *               with the suffix _deg; or wi_x, wi_y, wi_z, wo_x, wo_y, wo_z; or theta_h, theta_d,
+ *               phi_d (phi_h); or theta_h_index, theta_d_index, phi_d_index, the bins of merl; and
+ *               f or r, g, b. Separated by commas, semicolons or blanks; # starts a comment, and a
+ *               comment may give what all rows share: `# phi_d = 90 deg`, `# isotropic = 1`
+ *     cornell   spectra of the Cornell gonioreflectometer, 31 bands, as linear sRGB under D65
+ *     lumos     `# phi_in theta_in phi_out theta_out brdf`, in degrees, phi the zenith
+ * Negative values mean `no value`: such rows are left out, and rows with a direction at the horizon.
+ * NULL on failure with err filled: file, byte or line, field or column, what was expected
+ * (ASP_EIO, ASP_EFORMAT, ASP_EPARSE, ASP_ENOMEM). Allocates at most a small multiple of the file's
+ * size. */
 asp_measured *asp_measured_read(const char *path, asp_error *err);
 /* The same from memory; `name` is used in errors. The bytes are not kept. */
 asp_measured *asp_measured_read_memory(const void *bytes, size_t size, const char *name,
@@ -52,21 +63,28 @@ asp_measured *asp_measured_read_memory(const void *bytes, size_t size, const cha
 void asp_measured_free(asp_measured *measured);
 asp_measured_info asp_measured_get_info(const asp_measured *measured);
 
-/* f at a pair of directions, 0 below the horizon. For scattered data: the nearest listed geometry
- * (in half/difference angles); use the geometries themselves to fit. */
+/* f at a pair of directions, 0 below the horizon and where nothing is known; a NaN goes out as NaN.
+ * merl: linear between bin centres in sqrt(theta_h), theta_d and phi_d, over the bins that have a
+ * value (the database's own reader takes the nearest bin). rgl: as the database's loader, negative
+ * channels clipped at 0. Lists: the nearest geometry in half and difference angles; use the
+ * geometries themselves to fit. */
 asp_rgb asp_measured_eval(const asp_measured *measured, asp_vec3 wi, asp_vec3 wo);
 
 /* The listed geometries of scattered data, NULL and 0 for gridded data. */
 const asp_measurement *asp_measured_geometries(const asp_measured *measured, size_t *count);
 
 /* Writers. Each writes to a temporary name beside `path` and renames it when complete: on failure
- * `path` is as it was. merl: the 90 x 90 x 180 half/difference table of doubles (33 MB) with the
- * database's channel scales. csv: header and one row per geometry. */
+ * (ASP_EIO) `path` is as it was. merl: the table of doubles (35 MB) with the database's channel
+ * scales; other kinds are evaluated at the bin centres. csv: a table by bin index, with digits enough
+ * to give the same table back bit for bit (126 MB); a list as unit vectors, exact too; rgl sampled on
+ * a grid of half and difference angles (45 x 18 x 24, times 12 azimuths if anisotropic). */
 asp_status asp_measured_write_merl(const asp_measured *measured, const char *path, asp_error *err);
 asp_status asp_measured_write_csv(const asp_measured *measured, const char *path, asp_error *err);
 
-/* Builds a gridded measurement in MERL's parametrisation from a function (a model, say) or from
- * 3 x 90 x 90 x 180 values of f ordered [channel][theta_h][theta_d][phi_d], negative = missing. */
+/* Builds a gridded measurement in MERL's parametrisation from a function (a model, say), called at
+ * the bin centres with both directions above the horizon, or from 3 x 90 x 90 x 180 values of f
+ * ordered [channel][theta_h][theta_d][phi_d]; negative = missing. Values above 1e26, infinite or NaN
+ * are refused (ASP_EINVAL, the bin is named). description may be NULL. f is held to one rounding. */
 typedef asp_rgb asp_brdf_function(const void *context, asp_vec3 wi, asp_vec3 wo);
 asp_measured *asp_measured_from_function(asp_brdf_function *f, const void *context,
                                          const char *description, asp_error *err);
@@ -137,7 +155,8 @@ typedef struct asp_slope_statistics {
     double alpha_ggx;           double log_ggx;         /* gamma = 2 */
     double alpha_beckmann;      double log_beckmann;    /* the rms of |p - mean| */
     double P22[90];             /* measured density of slopes, averaged over the ring of slopes
-                                   tan(i) <= |p - mean| < tan(i + 1), i in degrees */
+                                   tan(i) <= |p - mean| < tan(i + 1), i in degrees; 0 in the last,
+                                   which has no outer edge */
 } asp_slope_statistics;
 
 /* ASP_EINVAL when no facet can be formed or all lie flat, ASP_ENOMEM. */
@@ -163,8 +182,8 @@ typedef struct asp_fabrication_report {
     asp_rgb multiple;               /* share of the reflected power that met two facets or more */
     double  bounces;                /* mean number of facets met */
     size_t  cells;                  /* cells of the measurement before interpolation */
-    double  noise;                  /* median counting error 1/sqrt(rays) of the cells that hold the
-                                       central 90 % of the power */
+    double  noise;                  /* counting error 1/sqrt(rays) of a cell, median by power: half
+                                       of the power lies in cells of a smaller one */
 } asp_fabrication_report;
 
 /* A virtual gonioreflectometer. Rays fall on the surface of the recipe from all directions (uniform
@@ -188,8 +207,8 @@ asp_measured *asp_fabricate(const asp_fabrication *what, asp_progress *progress,
  *     f_c = diffuse_c / pi + specular_c F(eta) D G2 / (4 cos(theta_i) cos(theta_o)),
  *
  * which is `lambert_specular`: a Lambertian base under isotropic facets (Ribardiere et al. 2017,
- * section 6). diffuse and specular are not negative, eta is shared by the channels. The same form
- * serves metals: for eta -> 100 the dielectric term F tends to 1 at all angles below 80 degrees, and
+ * section 6). diffuse lies in [0, 1], specular in [0, 1000], eta in [1.05, 100] is shared by the
+ * channels, alpha in [0.001, 4]. The same form serves metals: for eta -> 100 the dielectric term F tends to 1 at all angles below 80 degrees, and
  * `specular` is the coloured reflectance. Between the two, eta and specular trade against each other
  * (specular F(eta) is all that is seen near the normal); what the data do not tell apart has a large
  * uncertainty and a correlation near -1.
@@ -276,8 +295,8 @@ asp_measurement *asp_fit_geometries(const asp_measured *measured, size_t *count,
 
 /* Fits each model. *results: one per model in the order given, to be freed with free(); written on
  * success only. Levenberg-Marquardt (MINPACK) over alpha, shape and eta with the colours eliminated
- * by non-negative least squares at each step; absolute differences by iterative reweighting. Starts:
- * a jittered grid, the whole numbers and the ends of each shape range, and the optima of the models
+ * by bounded least squares at each step; absolute differences by iterative reweighting, then by a
+ * simplex. Starts: a jittered grid, the whole numbers and the ends of each shape range, and the optima of the models
  * with fewer shape numbers that were fitted before, so that a distribution is never fitted worse
  * than one it contains. Same measurement, same options: same bits.
  *

@@ -215,7 +215,8 @@ static void check_round_trip(void)
     CHECK(asp_measured_write_csv(m, path, &err) == ASP_OK, "one channel is written");
     back = asp_measured_read(path, &err);
     CHECK(back && asp_measured_get_info(back).channels == 1
-          && asp_measured_geometries(back, NULL)->f.b == 0.125, "and comes back as one");
+          && asp_measured_geometries(back, NULL)->f.b == 0.125
+          && !asp_measured_get_info(back).description[0], "and comes back as one");
     asp_measured_free(m);
     asp_measured_free(back);
     remove(path);

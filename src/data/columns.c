@@ -88,6 +88,16 @@ static int constant_in(aspi_line comment, const char *name, double *value, aspi_
     return 0;
 }
 
+/* `name = ...` says something of the rows, not of the material. */
+static int is_setting(aspi_line comment)
+{
+    size_t i = 0;
+    while (i < comment.length && is_name_character(comment.text[i]))
+        i++;
+    aspi_line rest = aspi_trimmed((aspi_line){ comment.text + i, comment.length - i, 0 });
+    return i && rest.length && rest.text[0] == '=';
+}
+
 static void note_constants(aspi_line comment, aspi_header *header)
 {
     double value;
@@ -101,7 +111,7 @@ static void note_constants(aspi_line comment, aspi_header *header)
             }
     if (constant_in(comment, "isotropic", &value, &rest))
         header->isotropic = value != 0;
-    else if (!header->description.length)
+    else if (!header->description.length && !is_setting(comment))
         header->description = comment;
 }
 

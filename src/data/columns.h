@@ -28,7 +28,7 @@ typedef struct aspi_header {
     char      separator;
     long long line;                      /* where the header stands */
     int       isotropic;                 /* 0, 1: said in a comment; -1: not said */
-    aspi_line description;               /* the first comment that is neither */
+    aspi_line description;               /* the first comment that is no `name = ...` */
 } aspi_header;
 
 /* The names of the csv format: {theta,phi}_{i,o,h,d} in radians or with _deg, wi_x .. wo_z,

@@ -11,7 +11,7 @@ void aspi_csv_comment(const asp_measured *measured, aspi_out *out)
         aspi_out_text(out, "\n");
     }
     aspi_out_text(out, measured->info.isotropic ? "# isotropic = 1\n" : "# isotropic = 0\n");
-    aspi_out_text(out, "# f in 1/sr, without the cosine\n");
+    aspi_out_text(out, "# unit = 1/sr, without the cosine\n");
 }
 
 void aspi_csv_row(aspi_out *out, const double *number, int count)
@@ -35,8 +35,8 @@ asp_status aspi_csv_sampled(const asp_measured *measured, aspi_out *out, asp_err
     double degree = ASPI_PI / 180;
     (void)err;
     aspi_csv_comment(measured, out);
-    aspi_out_text(out, "# sampled at half and difference angles: theta_h = 90 ((i + 0.5)/45)^2 deg, "
-                       "theta_d = 2.5 + 5 j deg, phi_d = 7.5 + 15 k deg\n"
+    aspi_out_text(out, "# grid = half and difference angles: theta_h at 90 ((i + 0.5)/45)^2 deg, "
+                       "theta_d at 2.5 + 5 j deg, phi_d at 7.5 + 15 k deg\n"
                        "theta_i,phi_i,theta_o,phi_o,r,g,b\n");
     for (int l = 0; l < azimuths; l++)
         for (int i = 0; i < 45; i++)

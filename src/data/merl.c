@@ -135,25 +135,33 @@ int aspi_merl_centre(const aspi_merl *merl, size_t i_h, size_t i_d, size_t i_p,
 
 /* ------------------------------------------------------------------ csv
  *
- * One row per bin, by index; rows of bins without a value (all three -1) are left out. The numbers
- * are f in more digits than a double holds, so that the stored number itself comes back: where
+ * One row per bin, by index; rows of bins without a value (all three -1) are left out as long as a
+ * quarter of the rows remains, which the reader asks for before it makes a table. The numbers are f in more digits than a double holds, so that the stored number itself comes back: where
  * long double is no wider than double, f comes back exactly and the stored number to one unit in
  * its last place. */
+
+static int is_blank_bin(const double *v, size_t bins)
+{
+    return v[0] == -1 && v[bins] == -1 && v[2 * bins] == -1;
+}
 
 static asp_status merl_write_csv(const asp_measured *measured, aspi_out *out, asp_error *err)
 {
     const aspi_merl *merl = measured->data;
-    size_t bins = bins_of(merl), at = 0;
+    size_t bins = bins_of(merl), at = 0, blank = 0;
     (void)err;
-    aspi_out_text(out, "# bins of the MERL parametrisation: theta_h = (i/90)^2 90 .. ((i+1)/90)^2 "
-                       "90 deg, theta_d = j .. j+1 deg, phi_d = k .. k+1 deg\n"
-                       "# f in 1/sr; negative, or no row: no value\n"
+    for (size_t i = 0; i < bins; i++)
+        blank += (size_t)is_blank_bin(merl->values + i, bins);
+    int skip = bins - blank >= bins / 4;
+    aspi_csv_comment(measured, out);
+    aspi_out_text(out, "# grid = bins of MERL: theta_h from (i/90)^2 90 to ((i+1)/90)^2 90 deg, "
+                       "theta_d from j to j+1 deg, phi_d from k to k+1 deg; negative: no value\n"
                        "theta_h_index,theta_d_index,phi_d_index,r,g,b\n");
     for (size_t i = 0; i < merl->n_h; i++)
         for (size_t j = 0; j < merl->n_d; j++)
             for (size_t k = 0; k < merl->n_p; k++, at++) {
                 const double *v = merl->values + at;
-                if (v[0] == -1 && v[bins] == -1 && v[2 * bins] == -1)
+                if (skip && is_blank_bin(v, bins))
                     continue;
                 char row[64 + 3 * ASPI_NUMBER_TEXT];
                 int n = snprintf(row, 64, "%zu,%zu,%zu", i, j, k);
