@@ -124,7 +124,8 @@ static asp_rgb blend(asp_rgb from, asp_rgb to, double t)
 
 asp_rgb aspi_radiance(const aspi_lights *lights, asp_vec3 w)
 {
-    double left = 1 - fmin(1, fabs(w.y)), s = 1 - left * left * left, a, b;
+    double height = fabs(w.y), left = height < 1 ? 1 - height : 0;
+    double s = 1 - left * left * left, a, b;
     asp_rgb sum = w.y >= 0 ? blend(lights->horizon, lights->zenith, s)
                            : blend(lights->ground, lights->nadir, s);
     for (int i = 0; i < lights->count; i++)
@@ -154,9 +155,9 @@ double aspi_light_chances(const aspi_lights *lights, asp_vec3 n, double chance[A
     for (int i = 0; i < lights->count; i++) {
         const aspi_light *l = &lights->light[i];
         double c = aspi_dot(n, l->d);
-        double s = sqrt(fmax(0, 1 - c * c));
+        double s2 = 1 - c * c, s = sqrt(s2 > 0 ? s2 : 0);
         double best = c >= l->cos_bound ? 1 : c * l->cos_bound + s * l->sin_bound;
-        sum += chance[i] = l->power * fmax(0, best);
+        sum += chance[i] = best > 0 ? l->power * best : 0;
     }
     for (int i = 0; i < lights->count; i++)
         chance[i] = sum > 0 ? chance[i] / sum : 0;
@@ -211,12 +212,12 @@ asp_environment asp_environment_studio(void)
         .ground = { 0.075, 0.07, 0.065 }, .nadir = { 0.14, 0.13, 0.12 },
         .lights = {
             { .shape = ASP_LIGHT_RECTANGLE, .direction = { -0.62, 0.60, 0.62 }, .half_width = 0.42,
-              .half_height = 0.42, .roll = 0.25, .radiance = { 4.4, 4.3, 4.1 } },
+              .half_height = 0.42, .roll = 0.25, .radiance = { 4.0, 3.9, 3.7 } },
             { .shape = ASP_LIGHT_RECTANGLE, .direction = { 0.92, 0.18, 0.10 }, .half_width = 0.14,
               .half_height = 0.85, .radiance = { 2.3, 2.5, 2.9 } },
             { .shape = ASP_LIGHT_DISC, .direction = { 0.42, 0.66, 0.72 }, .radius = 0.11,
               .radiance = { 7.0, 5.6, 4.0 } },
-            { .shape = ASP_LIGHT_RECTANGLE, .direction = { -0.10, 0.62, -0.95 }, .half_width = 0.75,
+            { .shape = ASP_LIGHT_RECTANGLE, .direction = { -0.10, 0.80, -0.90 }, .half_width = 0.75,
               .half_height = 0.20, .radiance = { 2.6, 2.6, 2.7 } },
         },
         .light_count = 4

@@ -63,7 +63,7 @@ typedef struct frame { asp_vec3 x, y, z; } frame;
 /* x = dn/dphi of n = (sin theta sin phi, cos theta, sin theta cos phi). */
 static frame frame_at(asp_vec3 n)
 {
-    double s = hypot(n.x, n.z);
+    double s = sqrt(n.x * n.x + n.z * n.z);
     asp_vec3 x = s > 1e-9 ? (asp_vec3){ n.z / s, 0, -n.x / s } : (asp_vec3){ 1, 0, 0 };
     asp_vec3 y = { n.y * x.z - n.z * x.y, n.z * x.x - n.x * x.z, n.x * x.y - n.y * x.x };
     return (frame){ x, y, n };
@@ -252,6 +252,11 @@ static void run(job *job, int threads, asp_preview_progress *progress, void *con
 
 /* ------------------------------------------------------------------ the description */
 
+static asp_rgb eval_material(const void *material, asp_vec3 wi, asp_vec3 wo)
+{
+    return asp_eval(material, wi, wo);
+}
+
 static int processors(void)
 {
     long n = sysconf(_SC_NPROCESSORS_ONLN);
@@ -301,6 +306,8 @@ asp_status asp_preview_render(const asp_preview *preview, asp_image *out, asp_er
     job job = { .scatter = { p->material, p->function, p->context, p->proposal },
                 .samples = p->samples ? p->samples : 64,
                 .plain = p->plain, .background = p->background, .seed = p->seed };
+    if (p->material && p->proposal)
+        job.scatter = (aspi_scatter){ NULL, eval_material, p->material, p->proposal };
     status = aspi_lights_prepare(p->environment ? p->environment : &studio, &job.lights, err);
     if (status != ASP_OK)
         return status;

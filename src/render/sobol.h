@@ -26,33 +26,38 @@ static inline uint32_t aspi_mix(uint32_t a, uint32_t b)
     return h ^ h >> 16;
 }
 
-/* Laine and Karras's permutation, on reversed digits a nested uniform scramble (Burley, section 3). */
-static inline uint32_t aspi_scramble(uint32_t x, uint32_t seed)
+/* Laine and Karras's permutation: on reversed digits a nested uniform scramble (Burley, section 3). */
+static inline uint32_t aspi_permute(uint32_t x, uint32_t seed)
 {
-    x = aspi_reverse(x) + seed;
+    x += seed;
     x ^= x * 0x6c50b47cu;
     x ^= x * 0xb82f1e52u;
     x ^= x * 0xc7afe638u;
-    x ^= x * 0x8d22f6e6u;
-    return aspi_reverse(x);
+    return x ^ x * 0x8d22f6e6u;
 }
 
-/* Second dimension of the Sobol sequence: direction numbers of the polynomial x + 1. */
-static inline uint32_t aspi_sobol_second(uint32_t index)
+static inline uint32_t aspi_scramble(uint32_t x, uint32_t seed)
 {
-    uint32_t x = 0;
-    for (uint32_t v = 0x80000000u; index; index >>= 1, v ^= v >> 1)
-        if (index & 1)
-            x ^= v;
-    return x;
+    return aspi_reverse(aspi_permute(aspi_reverse(x), seed));
+}
+
+/* Second dimension of the Sobol sequence from the reversed index. Its matrix is Pascal's triangle
+ * modulo 2, P(2n) = [P(n) P(n); 0 P(n)], applied halving by halving. */
+static inline uint32_t aspi_pascal(uint32_t x)
+{
+    x ^= x << 16;
+    x ^= (x & 0x00ff00ffu) << 8;
+    x ^= (x & 0x0f0f0f0fu) << 4;
+    x ^= (x & 0x33333333u) << 2;
+    return x ^ (x & 0x55555555u) << 1;
 }
 
 /* Point `index` of the set `seed`, in [0, 1)^2. */
 static inline void aspi_sobol(uint32_t index, uint32_t seed, double *u1, double *u2)
 {
-    index = aspi_scramble(index, seed);
-    *u1 = 0x1p-32 * aspi_scramble(aspi_reverse(index), aspi_mix(seed, 1));
-    *u2 = 0x1p-32 * aspi_scramble(aspi_sobol_second(index), aspi_mix(seed, 2));
+    uint32_t reversed = aspi_permute(aspi_reverse(index), seed);
+    *u1 = 0x1p-32 * aspi_scramble(reversed, aspi_mix(seed, 1));
+    *u2 = 0x1p-32 * aspi_scramble(aspi_pascal(reversed), aspi_mix(seed, 2));
 }
 
 #endif
