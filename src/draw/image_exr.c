@@ -1,8 +1,8 @@
 /* image_exr.c - OpenEXR scan lines through OpenEXR's C interface, into memory
  *
- * OpenEXR 3.1.5 takes a chunk whose packed size equals its raw size for an uncompressed one when
- * reading, but writes such chunks compressed; its ZIP runs into this with real images. So PIZ, and
- * `compress` below stores every chunk raw that did not get smaller. */
+ * Readers take a chunk whose packed size equals its raw size for an uncompressed one; the ZIP writer
+ * of OpenEXR 3.1.5 stores compressed bytes in that case. So PIZ, and `compress` below stores every
+ * chunk raw that did not get smaller. */
 #include <openexr.h>
 #include <stdio.h>
 #include <stdlib.h>
