@@ -207,8 +207,9 @@ asp_measured *asp_fabricate(const asp_fabrication *what, asp_progress *progress,
  *     f_c = diffuse_c / pi + specular_c F(eta) D G2 / (4 cos(theta_i) cos(theta_o)),
  *
  * which is `lambert_specular`: a Lambertian base under isotropic facets (Ribardiere et al. 2017,
- * section 6). diffuse lies in [0, 1], specular in [0, 1000], eta in [1.05, 100] is shared by the
- * channels, alpha in [0.001, 4]. The same form serves metals: for eta -> 100 the dielectric term F tends to 1 at all angles below 80 degrees, and
+ * section 6). diffuse and specular lie in [0, 1] (a facet reflects no more than it receives; the
+ * limit of specular is an option), eta in [1.05, 100] is shared by the channels, alpha lies in
+ * [0.001, 4]. The same form serves metals: for eta -> 100 the dielectric term F tends to 1 at all angles below 80 degrees, and
  * `specular` is the coloured reflectance. Between the two, eta and specular trade against each other
  * (specular F(eta) is all that is seen near the normal); what the data do not tell apart has a large
  * uncertainty and a correlation near -1.
@@ -276,6 +277,8 @@ typedef struct asp_fit_options {
     int      starts;                      /* polished starts per distribution, [1, 64]; 0: 4 */
     uint64_t seed;                        /* of the jitter of the starts */
     int      mask;                        /* asp_mask */
+    double   specular_limit;              /* (0, 1000]; 0: 1. More lets sheen that is not made by
+                                             facets pass as reflection of more than 100 % */
     asp_progress *progress;               /* NULL: none */
     void    *context;
 } asp_fit_options;
@@ -296,9 +299,9 @@ asp_measurement *asp_fit_geometries(const asp_measured *measured, size_t *count,
 /* Fits each model. *results: one per model in the order given, to be freed with free(); written on
  * success only. Levenberg-Marquardt (MINPACK) over alpha, shape and eta with the colours eliminated
  * by bounded least squares at each step; absolute differences by iterative reweighting, then by a
- * simplex. Starts: a jittered grid, the whole numbers and the ends of each shape range, and the optima of the models
- * with fewer shape numbers that were fitted before, so that a distribution is never fitted worse
- * than one it contains. Same measurement, same options: same bits.
+ * simplex. Starts: a jittered grid, the whole numbers and the ends of each shape range, and the
+ * optima of the models with fewer shape numbers of the same call, so that a distribution is never
+ * fitted worse than one it contains. Same measurement, same options: same bits.
  *
  * Uncertainties: White's heteroscedasticity-consistent covariance A^-1 B A^-1 of the joint Jacobian
  * at the optimum, A the curvature of the loss, B the scatter of its gradient over geometries. They

@@ -11,7 +11,7 @@
 #define COARSE 1200            /* geometries, about, on which starts are compared */
 #define COARSE_ROUNDS 6
 #define FINALISTS 3            /* how many points are polished on all geometries */
-#define ROUNDS 40
+#define ROUNDS 20
 
 const char *asp_fit_reason_text(asp_fit_reason reason)
 {
@@ -72,7 +72,7 @@ static asp_status survey(job *j, size_t k, aspi_point *out, size_t *found, size_
 {
     aspi_problem p;
     size_t limit = (size_t)j->options.starts;
-    asp_status status = aspi_problem_make(j->model[k], j->loss, &j->coarse, j->options.mask, &p, err);
+    asp_status status = aspi_problem_make(j->model[k], j->loss, &j->coarse, &j->options, &p, err);
     if (status)
         return status;
     aspi_search search = search_of(j, &p);
@@ -240,7 +240,7 @@ static asp_status fit_model(job *j, size_t k, asp_fit_result *out, asp_error *er
     j->asked = 0;
     asp_status status = survey(j, k, candidate, &found, &evaluations, err);
     if (!status)
-        status = aspi_problem_make(j->model[k], j->loss, &j->fine, j->options.mask, &p, err);
+        status = aspi_problem_make(j->model[k], j->loss, &j->fine, &j->options, &p, err);
     if (!status) {
         j->box[k] = p.box;
         if (found)
@@ -268,6 +268,10 @@ static asp_status check(job *j, const asp_fit_options *options, asp_error *err)
         o->starts = STARTS;
     if (o->starts < 1 || o->starts > 64)
         return asp_fail_range(err, "starts", o->starts, 1, 0, 64);
+    if (o->specular_limit == 0)
+        o->specular_limit = 1;
+    if (!(o->specular_limit > 0 && o->specular_limit <= 1000))
+        return asp_fail_range(err, "specular_limit", o->specular_limit, 0, 1, 1000);
     if ((o->mask & ~ASP_MASK_WALL) < 0 || (o->mask & ~ASP_MASK_WALL) > ASP_MASK_V_CAVITY)
         return asp_fail(err, ASP_EINVAL, "mask", "not one of asp_mask");
     const char *name = o->loss ? o->loss : aspi_losses[0]->about.name;

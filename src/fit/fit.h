@@ -5,6 +5,7 @@
  *   box.c          parameters as numbers in [0, 1], and back
  *   problem.c      model over geometries, residuals, colours by non-negative least squares
  *   optimise.c     Levenberg-Marquardt over the box, reweighting, ends of ranges
+ *   simplex.c      the last steps for absolute differences
  *   starts.c       where the searches begin
  *   uncertainty.c  covariance at the optimum
  *   fit.c          the public call */
@@ -19,6 +20,8 @@
 #include <stdint.h>
 
 #define ASPI_INV_PI 0.31830988618379067154
+
+#define DIFFUSE_HIGH 1.0               /* a diffuse base returns no more than it receives */
 
 /* ---- geometries as arrays */
 
@@ -91,6 +94,7 @@ typedef struct aspi_problem {
     const aspi_fit_set *set;
     aspi_box box;
     int      mask;
+    double   specular_high;
     double  *memory;
     double  *facets;                             /* D G2 / (4 cos cos) at the last alpha and shape */
     double  *specular;                           /* the same times F at the last eta */
@@ -102,7 +106,7 @@ typedef struct aspi_problem {
 } aspi_problem;
 
 asp_status aspi_problem_make(const asp_model *model, const aspi_loss *loss, const aspi_fit_set *set,
-                             int mask, aspi_problem *out, asp_error *err);
+                             const asp_fit_options *options, aspi_problem *out, asp_error *err);
 void aspi_problem_free(aspi_problem *p);
 
 /* Brings facets and specular to the place b; 0 when the distribution cannot be made there. */
@@ -133,6 +137,9 @@ typedef struct aspi_search {
  * `rounds`: how often absolute differences are reweighted at most. ASP_ENOMEM, ASP_ECANCELLED. */
 asp_status aspi_polish(aspi_search *search, aspi_point *at, const int *free_axes, int rounds,
                        asp_error *err);
+/* Absolute differences to the end; `flat` says whether it came to rest. */
+asp_status aspi_simplex(aspi_search *search, aspi_point *at, const int *free_axes, int *flat,
+                        asp_error *err);
 /* Tries the very ends of ranges that the point has come close to. */
 asp_status aspi_try_ends(aspi_search *search, aspi_point *at, int rounds, asp_error *err);
 

@@ -14,6 +14,8 @@
 #include <string.h>
 
 #define TURN 6.28318530717958647692    /* keeps u away from 0, where relative steps would vanish */
+#define NEAR 0.12                      /* how close to an end the end itself is tried */
+#define COARSE_ROUNDS 8                /* fewer rounds than that ask for a rough answer */
 #define INSIDE 1e-3                    /* how far from an end a search starts */
 
 typedef struct run {
@@ -103,44 +105,58 @@ static int vanishes(const aspi_problem *p, double loss)
     return p->loss->power == 1 ? loss <= 1e-12 * size : loss <= 1e-24 * size;
 }
 
+/* Absolute differences as squares weighted by 1/|r|, until that no longer pays. */
+static asp_status reweighted(aspi_search *search, aspi_point *at, const int *free_axes, int rounds,
+                             asp_error *err)
+{
+    aspi_problem *p = search->problem;
+    double soften = 1;
+    for (int round = 0; round < rounds && soften > 1e-3 && !vanishes(p, at->loss); round++) {
+        int info;
+        aspi_point next = *at;
+        aspi_problem_reweight(p, at, soften);
+        asp_status status = descend(search, &next, free_axes, 3, &info, err);
+        if (status)
+            return status;
+        aspi_problem_colours(p, &next, 60);
+        /* weights of nearly fitted points pin a search down: they grow only when it has come to rest */
+        if (at->loss - next.loss < 1e-3 * at->loss)
+            soften *= 0.25;
+        if (next.loss < at->loss)
+            *at = next;
+    }
+    return ASP_OK;
+}
+
 asp_status aspi_polish(aspi_search *search, aspi_point *at, const int *free_axes, int rounds,
                        asp_error *err)
 {
     aspi_problem *p = search->problem;
-    int absolute = p->loss->power == 1, idle = 0;
-    double soften = 0.5;
-    if (!isfinite(at->loss)) {
-        search->reason = ASP_FIT_SINGULAR;
+    asp_status status;
+    search->reason = ASP_FIT_SINGULAR;
+    if (!isfinite(at->loss))
         return ASP_OK;
-    }
-    search->reason = ASP_FIT_EVALUATIONS;
-    for (int round = 0; round < (absolute ? rounds : 1); round++) {
+    if (p->loss->power == 2) {
         int info;
         aspi_point next = *at;
-        aspi_problem_reweight(p, at, soften);
-        asp_status status = descend(search, &next, free_axes, absolute ? 3 : 4 * rounds, &info, err);
+        aspi_problem_reweight(p, at, 1);
+        status = descend(search, &next, free_axes, 4 * rounds, &info, err);
         if (status)
             return status;
         aspi_problem_colours(p, &next, 60);
-        double gain = at->loss - next.loss;
-        if (gain > 0)
+        if (next.loss < at->loss)
             *at = next;
-        if (vanishes(p, at->loss)) {
-            search->reason = ASP_FIT_EXACT;
-            return ASP_OK;
-        }
-        if (!absolute) {
-            search->reason = reason_of(info);
-            return ASP_OK;
-        }
-        soften = fmax(0.5 * soften, 0.01);
-        idle = gain > 1e-6 * at->loss ? 0 : idle + 1;
-        if (idle == 3) {
-            search->reason = info == 2 ? ASP_FIT_STEP : ASP_FIT_LOSS;
-            return ASP_OK;
-        }
+        search->reason = reason_of(info);
+    } else {
+        int flat = 0;
+        status = reweighted(search, at, free_axes, rounds, err);
+        if (!status && rounds > COARSE_ROUNDS && !vanishes(p, at->loss))
+            status = aspi_simplex(search, at, free_axes, &flat, err);
+        search->reason = flat ? ASP_FIT_LOSS : ASP_FIT_EVALUATIONS;
     }
-    return ASP_OK;
+    if (vanishes(p, at->loss))
+        search->reason = ASP_FIT_EXACT;
+    return status;
 }
 
 asp_status aspi_try_ends(aspi_search *search, aspi_point *at, int rounds, asp_error *err)
@@ -150,7 +166,7 @@ asp_status aspi_try_ends(aspi_search *search, aspi_point *at, int rounds, asp_er
     for (int i = 0; i < p->box.n; i++) {
         const aspi_axis *axis = &p->box.axis[i];
         double near_low = at->b[i] - axis->b_low, near_high = axis->b_high - at->b[i];
-        if (fmin(near_low, near_high) > 0.03 || fmin(near_low, near_high) == 0)
+        if (fmin(near_low, near_high) > NEAR || fmin(near_low, near_high) == 0)
             continue;
         int free_axes[ASPI_AXES];
         for (int k = 0; k < p->box.n; k++)

@@ -1,21 +1,20 @@
 /* problem.c - a model over geometries, its residuals, and its colours
  *
  * For given alpha, shape and eta the model is linear in the colours, f = diffuse/pi + specular S, and
- * the channels are independent: per channel a least-squares problem of two unknowns that may not be
- * negative (Lawson, Hanson 1974), repeated where the loss is not a square of something linear:
+ * the channels are independent: per channel a least-squares problem of two unknowns in a box, repeated where the loss is not a square of something linear:
  * Gauss-Newton with halved steps for logarithms, reweighting for absolute values. */
 #include "fit.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define COLOUR_HIGH 1e3
 
 asp_status aspi_problem_make(const asp_model *model, const aspi_loss *loss, const aspi_fit_set *set,
-                             int mask, aspi_problem *out, asp_error *err)
+                             const asp_fit_options *options, aspi_problem *out, asp_error *err)
 {
     size_t n = set->n;
-    aspi_problem p = { .model = model, .loss = loss, .set = set, .mask = mask };
+    aspi_problem p = { .model = model, .loss = loss, .set = set,
+                       .mask = options->mask, .specular_high = options->specular_limit };
     p.box = aspi_box_make(model);
     p.memory = malloc(10 * n * sizeof *p.memory);
     if (!p.memory)
@@ -124,21 +123,34 @@ static double objective(const aspi_problem *p, const double *r, const double *w,
     return sum;
 }
 
-/* x >= 0 that minimises x.Ax/2 - x.b for a 2x2 positive semidefinite A; at most what a material
- * takes. */
-static void nonnegative(double a00, double a01, double a11, double b0, double b1, double x[2])
+/* The x in [0, 1] x [0, high] that minimises x.Ax/2 - x.b for a 2x2 positive semidefinite A: inside, or the best of the four edges. */
+static void bounded(double a00, double a01, double a11, double b0, double b1, double high,
+                    double x[2])
 {
-    double det = a00 * a11 - a01 * a01;
+    double det = a00 * a11 - a01 * a01, least = INFINITY;
     if (det > 1e-13 * a00 * a11) {
         x[0] = (b0 * a11 - b1 * a01) / det;
         x[1] = (b1 * a00 - b0 * a01) / det;
-        if (x[0] >= 0 && x[1] >= 0 && x[0] <= COLOUR_HIGH && x[1] <= COLOUR_HIGH)
+        if (x[0] >= 0 && x[1] >= 0 && x[0] <= DIFFUSE_HIGH && x[1] <= high)
             return;
     }
-    double alone0 = a00 > 0 ? fmax(0, b0 / a00) : 0, alone1 = a11 > 0 ? fmax(0, b1 / a11) : 0;
-    int first = b0 * alone0 > b1 * alone1;        /* the one that brings the sum lower */
-    x[0] = first ? fmin(alone0, COLOUR_HIGH) : 0;
-    x[1] = first ? 0 : fmin(alone1, COLOUR_HIGH);
+    for (int edge = 0; edge < 4; edge++) {
+        double y[2], fixed = edge & 1 ? edge & 2 ? high : DIFFUSE_HIGH : 0;
+        if (edge & 2) {
+            y[1] = fixed;
+            y[0] = a00 > 0 ? fmin(fmax((b0 - a01 * fixed) / a00, 0), DIFFUSE_HIGH) : 0;
+        } else {
+            y[0] = fixed;
+            y[1] = a11 > 0 ? fmin(fmax((b1 - a01 * fixed) / a11, 0), high) : 0;
+        }
+        double value = 0.5 * (a00 * y[0] * y[0] + a11 * y[1] * y[1]) + a01 * y[0] * y[1]
+                     - b0 * y[0] - b1 * y[1];
+        if (value < least) {
+            least = value;
+            x[0] = y[0];
+            x[1] = y[1];
+        }
+    }
 }
 
 /* One Gauss-Newton step for channel c from x, with the residuals there in p->residual, p->slope. */
@@ -157,7 +169,7 @@ static void step(const aspi_problem *p, const double *w, double soft, const doub
         b0 += wi * g0 * target;
         b1 += wi * g1 * target;
     }
-    nonnegative(a00, a01, a11, b0, b1, next);
+    bounded(a00, a01, a11, b0, b1, p->specular_high, next);
 }
 
 static void improve(aspi_problem *p, int c, double x[2], const double *w, double soft, int rounds)
@@ -182,7 +194,7 @@ static void improve(aspi_problem *p, int c, double x[2], const double *w, double
         best = now;
         x[0] = next[0];
         x[1] = next[1];
-        if (gain <= 1e-14 * best)
+        if (gain <= (w || p->loss->power == 2 ? 1e-14 : 1e-8) * best)
             break;
     }
 }
@@ -210,10 +222,10 @@ void aspi_problem_colours(aspi_problem *p, aspi_point *at, int rounds)
     for (int c = 0; c < 3; c++) {
         double x[2] = { at->colour[c], at->colour[3 + c] };
         residuals_of(p, c, x, p->residual, NULL);
-        double before = sum_of(p, p->residual), soft = 0;
-        if (p->loss->power == 1)
-            soft = 1e-4 * before / (double)p->set->n + 1e-300;
-        improve(p, c, x, NULL, soft, rounds);
+        double before = sum_of(p, p->residual), mean = before / (double)p->set->n + 1e-300;
+        if (p->loss->power == 1)         /* coarse to fine: see aspi_polish */
+            improve(p, c, x, NULL, 0.3 * mean, rounds);
+        improve(p, c, x, NULL, 0.003 * mean, rounds);
         residuals_of(p, c, x, p->residual, NULL);
         double after = sum_of(p, p->residual);
         if (after < before) {

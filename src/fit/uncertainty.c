@@ -3,8 +3,9 @@
  * White 1980: cov = A^-1 B A^-1, A = sum h g g', B = sum over geometries of G G', G the sum of
  * psi g over the channels of a geometry (their errors are not independent), with
  *   squares             h = 1, psi = r
- *   absolute values     h = 1/s, psi = sign(r), s the mean |r| of the neighbouring geometries: twice
- *                       the density of errors at 0, were they Laplace's with that scale
+ *   absolute values     h = 2 p(0), psi = sign(r), p(0) the density of errors at 0: counted from all
+ *                       r/s with |r/s| < 1/2 and divided by s, the mean |r| of the neighbouring
+ *                       geometries (Powell 1984 with a local scale)
  * and g the derivative of a residual by the parameters: the places b of the axes and the colours. A
  * parameter at an end of its range has the derivative towards the inside. */
 #include "fit.h"
@@ -59,24 +60,34 @@ static void local_scale(size_t n, const double *r, double *h)
     }
 }
 
+/* h from the residuals in psi, which become signs. */
+static void absolute(work *w)
+{
+    size_t near_zero = 0, all = 3 * w->n;
+    for (int c = 0; c < 3; c++)
+        local_scale(w->n, w->psi + (size_t)c * w->n, w->h + (size_t)c * w->n);
+    for (size_t j = 0; j < all; j++)
+        near_zero += fabs(w->psi[j]) * w->h[j] < 0.5;
+    double twice = 2 * (double)near_zero / (double)all;
+    for (size_t j = 0; j < all; j++) {
+        w->h[j] *= twice;
+        w->psi[j] = (w->psi[j] > 0) - (w->psi[j] < 0);
+    }
+}
+
 static void residuals(work *w)
 {
     aspi_problem *p = w->p;
     for (int c = 0; c < 3; c++) {
-        double *r = w->psi + (size_t)c * w->n, *h = w->h + (size_t)c * w->n;
-        for (size_t i = 0; i < w->n; i++)
-            p->fit[i] = w->at->colour[c] * ASPI_INV_PI + w->at->colour[3 + c] * p->specular[i];
-        p->loss->residual(w->n, p->fit, p->set->data[c], p->set->weight, r,
-                          w->slope + (size_t)c * w->n);
-        if (p->loss->power == 1)
-            local_scale(w->n, r, h);
+        double *r = w->psi + (size_t)c * w->n, *slope = w->slope + (size_t)c * w->n;
         for (size_t i = 0; i < w->n; i++) {
-            if (p->loss->power == 2)
-                h[i] = 1;
-            else
-                r[i] = (r[i] > 0) - (r[i] < 0);
+            p->fit[i] = w->at->colour[c] * ASPI_INV_PI + w->at->colour[3 + c] * p->specular[i];
+            w->h[(size_t)c * w->n + i] = 1;
         }
+        p->loss->residual(w->n, p->fit, p->set->data[c], p->set->weight, r, slope);
     }
+    if (p->loss->power == 1)
+        absolute(w);
 }
 
 static void accumulate(work *w)
@@ -167,7 +178,8 @@ static void describe_axis(const aspi_axis *axis, double b, double sd, asp_fit_pa
     out->determined = sd < 0.25 * (axis->b_high - axis->b_low);
 }
 
-static void describe_colour(int k, double value, double sd, asp_fit_parameter *out)
+static void describe_colour(int k, double value, double sd, double highest,
+                            asp_fit_parameter *out)
 {
     static const char *const name[6] = { "diffuse_r", "diffuse_g", "diffuse_b",
                                          "specular_r", "specular_g", "specular_b" };
@@ -175,8 +187,8 @@ static void describe_colour(int k, double value, double sd, asp_fit_parameter *o
     out->value = value;
     out->uncertainty = sd;
     out->low = fmax(0, value - sd);
-    out->high = value + sd;
-    out->at_bound = value > 0 ? 0 : -1;
+    out->high = fmin(value + sd, highest);
+    out->at_bound = value > 0 ? value < highest ? 0 : 1 : -1;
     out->determined = sd < 0.25 || sd < 0.5 * value;
 }
 
@@ -215,7 +227,8 @@ asp_status aspi_uncertainties(aspi_problem *p, const aspi_point *at, asp_fit_res
         if (a < axes)
             describe_axis(&p->box.axis[a], at->b[a], sd, &out->parameter[a]);
         else
-            describe_colour(a - axes, at->colour[a - axes], sd, &out->parameter[a]);
+            describe_colour(a - axes, at->colour[a - axes], sd,
+                            a - axes < 3 ? DIFFUSE_HIGH : p->specular_high, &out->parameter[a]);
         for (int b = 0; b < w->count; b++) {
             double both = sqrt(cov[a][a] * cov[b][b]);
             out->correlation[a * P_LIMIT + b] = blind[a] || blind[b] || !(both > 0)
