@@ -1,5 +1,6 @@
 /* gonio.c - the virtual gonioreflectometer: rays in, power per cell out */
 #define _POSIX_C_SOURCE 200809L
+#include "core/rng.h"
 #include "surface/surface.h"
 
 #include <math.h>
@@ -8,37 +9,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- half and difference angles */
-
-/* Rusinkiewicz 1998: h halfway between, d = wi in the frame of h. phi_d and pi - phi_d are the same
- * by mirror symmetry with reciprocity, phi_d and -phi_d by mirror symmetry. */
-void aspi_half_difference(asp_vec3 wi, asp_vec3 wo, double *theta_h, double *theta_d,
-                          double *phi_d)
-{
-    asp_vec3 h = { wi.x + wo.x, wi.y + wo.y, wi.z + wo.z };
-    asp_vec3 e = { wi.x - wo.x, wi.y - wo.y, wi.z - wo.z };
-    double flat = sqrt(h.x * h.x + h.y * h.y), length = sqrt(flat * flat + h.z * h.z);
-    double c = flat > 0 ? h.x / flat : 1, s = flat > 0 ? h.y / flat : 0;
-    *theta_h = atan2(flat, h.z);
-    /* e is perpendicular to h; along = its part in the plane of h and z, across = the rest */
-    double across = fabs(c * e.y - s * e.x);
-    double along = fabs((c * e.x + s * e.y) * h.z - e.z * flat) / length;
-    *theta_d = atan2(sqrt(across * across + along * along), length);
-    *phi_d = atan2(across, along);
-}
-
 static int bin(double at, int n)
 {
     return at < 0 ? 0 : at >= n ? n - 1 : (int)at;
 }
 
+/* phi_d and pi - phi_d are the same by mirror symmetry with reciprocity, phi_d and -phi_d by mirror
+ * symmetry: all fold to [0, pi/2]. */
 static size_t cell_of(asp_vec3 wi, asp_vec3 wo)
 {
-    double h, d, phi;
-    aspi_half_difference(wi, wo, &h, &d, &phi);
-    int i = bin(ASPI_CELLS_H * sqrt(h * (2 / ASPI_PI)), ASPI_CELLS_H);
-    int j = bin(ASPI_CELLS_D * (d * (2 / ASPI_PI)), ASPI_CELLS_D);
-    int k = bin(ASPI_CELLS_PHI * (phi * (2 / ASPI_PI)), ASPI_CELLS_PHI);
+    const double half_pi = ASPI_PI / 2;
+    aspi_half a = aspi_half_of(wi, wo);
+    double phi = fabs(a.phi_d);
+    if (phi > half_pi)
+        phi = ASPI_PI - phi;
+    int i = bin(ASPI_CELLS_H * sqrt(a.theta_h / half_pi), ASPI_CELLS_H);
+    int j = bin(ASPI_CELLS_D * (a.theta_d / half_pi), ASPI_CELLS_D);
+    int k = bin(ASPI_CELLS_PHI * (phi / half_pi), ASPI_CELLS_PHI);
     return ((size_t)j * ASPI_CELLS_PHI + (size_t)k) * ASPI_CELLS_H + (size_t)i;
 }
 
@@ -50,6 +37,15 @@ static void count_path(aspi_cell *cell, const aspi_path *path)
     cell->r += (uint64_t)(path->weight.r * ASPI_WEIGHT_ONE + 0.5);
     cell->g += (uint64_t)(path->weight.g * ASPI_WEIGHT_ONE + 0.5);
     cell->b += (uint64_t)(path->weight.b * ASPI_WEIGHT_ONE + 0.5);
+}
+
+void aspi_gonio_add(aspi_counts *counts, asp_vec3 wi, const aspi_path *path)
+{
+    counts->bounces += (uint64_t)path->bounces;
+    count_path(&counts->cells[cell_of(wi, path->wo)], path);
+    count_path(&counts->all, path);
+    if (path->bounces > 1)
+        count_path(&counts->multiple, path);
 }
 
 static void add_cell(aspi_cell *a, const aspi_cell *b)
@@ -82,23 +78,20 @@ typedef struct worker {
 static void trace_chunk(const job *work, size_t chunk, aspi_counts *counts)
 {
     size_t first = chunk * CHUNK, left = work->rays - first, n = left < CHUNK ? left : CHUNK;
-    aspi_rng rng = aspi_rng_make(work->seed, 0x100000000u + chunk);
+    uint64_t start = aspi_random_start(work->seed, 3 + chunk);
     for (size_t i = 0; i < n; ++i) {
-        double u = aspi_rng_double(&rng), v = aspi_rng_double(&rng);
-        double square = aspi_rng_double(&rng), phi = 2 * ASPI_PI * aspi_rng_double(&rng);
+        double u = aspi_unit64(aspi_random_at(start, 4 * i));
+        double v = aspi_unit64(aspi_random_at(start, 4 * i + 1));
+        double square = aspi_unit64(aspi_random_at(start, 4 * i + 2));
+        double phi = 2 * ASPI_PI * aspi_unit64(aspi_random_at(start, 4 * i + 3));
         double radius = sqrt(square);
         asp_vec3 wi = { radius * cos(phi), radius * sin(phi), sqrt(1 - square) };
         aspi_path path;
         ++counts->rays;
-        if (!aspi_trace(work->tracer, u, v, wi, work->metal, &path)) {
+        if (aspi_trace(work->tracer, u, v, wi, work->metal, &path))
+            aspi_gonio_add(counts, wi, &path);
+        else
             ++counts->lost;
-            continue;
-        }
-        counts->bounces += (uint64_t)path.bounces;
-        count_path(&counts->cells[cell_of(wi, path.wo)], &path);
-        count_path(&counts->all, &path);
-        if (path.bounces > 1)
-            count_path(&counts->multiple, &path);
     }
 }
 

@@ -9,6 +9,7 @@
  *         = (1 + p^2/(n alpha^2))^-gamma / (pi alpha^2)
  *
  * is the Student's t-distribution of STD (Ribardiere et al. 2017, eq. 7 in slopes). */
+#include "core/rng.h"
 #include "surface/surface.h"
 
 #include <math.h>
@@ -44,20 +45,21 @@ static asp_status check(const asp_surface_recipe *r, asp_error *err)
  * one random phase per pair of waves +-k and no random amplitude, so that the variance of every
  * realisation is exact and, of many waves, the values are Gaussian. The result is in data[].re.
  * Returns the mean square of the differences between neighbours along x (that along y is equal). */
-static double process(aspi_complex *data, aspi_complex *roots, int n, double length, aspi_rng rng)
+static double process(aspi_complex *data, aspi_complex *roots, int n, double length,
+                      uint64_t start)
 {
     double step = 2 * ASPI_PI / n, square = 0;
     for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) {
             int kx = x < n / 2 ? x : x - n, ky = y < n / 2 ? y : y - n;
-            double phase = 2 * ASPI_PI * aspi_rng_double(&rng);
+            size_t at = (size_t)y * (size_t)n + (size_t)x;
+            double phase = 2 * ASPI_PI * aspi_unit64(aspi_random_at(start, at));
             /* half of the plane: the other half is the conjugate, and -n/2 has no partner */
             int used = (ky > 0 || (ky == 0 && kx > 0)) && kx > -n / 2;
             double k2 = step * step * ((double)kx * kx + (double)ky * ky);
             double amplitude = used ? exp(-k2 * length * length / 8) : 0;
             double s = sin(0.5 * step * kx);
-            data[(size_t)y * (size_t)n + (size_t)x] =
-                (aspi_complex){ amplitude * cos(phase), amplitude * sin(phase) };
+            data[at] = (aspi_complex){ amplitude * cos(phase), amplitude * sin(phase) };
             square += 2 * amplitude * amplitude * s * s;
         }
     aspi_fft2(data, n, roots);
@@ -150,13 +152,13 @@ asp_status asp_height_field_make(const asp_surface_recipe *recipe, asp_height_fi
     ranked *order = mixed ? malloc(count * sizeof *order) : NULL;
     if (data && roots && heights && (order || !mixed)) {
         double square = process(data, roots, n, recipe->correlation,
-                                aspi_rng_make(recipe->seed, 1));
+                                aspi_random_start(recipe->seed, 1));
         double scale = recipe->alpha / sqrt(2 * square);
         for (size_t i = 0; i < count; ++i)
             heights[i] = (float)(scale * data[i].re);
         if (mixed) {
             process(data, roots, n, recipe->correlation * recipe->patch,
-                    aspi_rng_make(recipe->seed, 2));
+                    aspi_random_start(recipe->seed, 2));
             for (size_t i = 0; i < count; ++i)
                 order[i] = (ranked){ (float)data[i].re, (uint32_t)i };
             roughen(heights, order, count, recipe->gamma);

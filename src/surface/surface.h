@@ -1,38 +1,9 @@
-/* surface.h - what the files of this folder share: random numbers, the transform, the tracer and
- * the cells of the gonioreflectometer */
+/* surface.h - what the files of this folder share: the transform, facets, the tracer and the cells
+ * of the gonioreflectometer */
 #ifndef ASPI_SURFACE_H
 #define ASPI_SURFACE_H
 
-#include "asperity_data.h"
-
-#define ASPI_PI 3.14159265358979323846
-
-/* ---- random numbers: SplitMix64 (Steele, Lea, Flood 2014), one stream per seed and purpose */
-
-typedef struct aspi_rng { uint64_t state; } aspi_rng;
-
-static inline uint64_t aspi_rng_next(aspi_rng *rng)
-{
-    uint64_t z = rng->state += 0x9E3779B97F4A7C15u;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
-}
-
-/* [0, 1), 53 bits */
-static inline double aspi_rng_double(aspi_rng *rng)
-{
-    return (double)(aspi_rng_next(rng) >> 11) * 0x1p-53;
-}
-
-static inline aspi_rng aspi_rng_make(uint64_t seed, uint64_t stream)
-{
-    aspi_rng rng = { seed };
-    uint64_t a = aspi_rng_next(&rng);
-    rng.state = stream ^ 0xD1B54A32D192ED03u;
-    rng.state = a ^ aspi_rng_next(&rng);
-    return rng;
-}
+#include "data/measured.h"
 
 /* ---- the discrete Fourier transform */
 
@@ -96,11 +67,10 @@ typedef struct aspi_counts {
     aspi_cell all, multiple;            /* multiple: paths of two bounces or more */
 } aspi_counts;
 
-/* Half and difference angles (Rusinkiewicz 1998), phi_d folded to [0, pi/2]. */
-void aspi_half_difference(asp_vec3 wi, asp_vec3 wo, double *theta_h, double *theta_d,
-                          double *phi_d);
+/* One path that came in from wi. */
+void aspi_gonio_add(aspi_counts *counts, asp_vec3 wi, const aspi_path *path);
 
-/* Sends `rays` rays; *counts is overwritten. `phase` of progress runs from 0 to 1. */
+/* Sends `rays` rays; *counts is overwritten. Random stream 3 + chunk of the seed. */
 asp_status aspi_gonio_count(const aspi_tracer *tracer, const asp_metal *metal, uint64_t seed,
                             size_t rays, int threads, asp_progress *progress, void *context,
                             aspi_counts *counts, asp_error *err);

@@ -1,7 +1,7 @@
 /* table.c - from counted rays to MERL's table
  *
  * A column is one cell of (theta_d, phi_d) with its fine cells of theta_h. Along theta_h they are
- * joined until a bin holds enough rays; log f of the bins is interpolated in theta_h^2 (in which the
+ * joined until the bins hold enough rays; log f of the bins is interpolated in theta_h^2 (in which the
  * lobe of a rough surface is nearly a straight line) and between columns. */
 #include "surface/surface.h"
 
@@ -12,7 +12,7 @@
 enum { COLUMNS = ASPI_CELLS_D * ASPI_CELLS_PHI, MERL_H = 90, MERL_D = 90, MERL_PHI = 180 };
 
 static const double WIDEST = 4 * ASPI_PI / 180;    /* a bin of theta_h grows no further ... */
-static const double FEWEST = 16;                   /* ... once it holds so many rays */
+static const double FEWEST = 64;                   /* ... once it holds a quarter of so many rays */
 
 typedef struct fbin { double square, count, log_f[3], power; } fbin;
 typedef struct column { int n; double end; fbin bins[ASPI_CELLS_H]; } column;
@@ -60,56 +60,97 @@ static double measure(int i, int j, int k, double *square)
 
 /* ---- columns */
 
-typedef struct pending { double rays, power[3], measure, moment, from; } pending;
+typedef struct pending { double rays, power[3], measure, moment; } pending;
 
-static void close_bin(column *col, pending *p, double rays)
+static void add_pending(pending *into, const pending *p)
+{
+    into->rays += p->rays;
+    into->measure += p->measure;
+    into->moment += p->moment;
+    for (int c = 0; c < 3; ++c)
+        into->power[c] += p->power[c];
+}
+
+static void put_bin(column *col, const pending *p, double rays)
 {
     fbin *b = &col->bins[col->n++];
     *b = (fbin){ .square = p->moment / p->measure, .count = p->rays };
     for (int c = 0; c < 3; ++c) {
-        double f = p->power[c] / (ASPI_WEIGHT_ONE * rays * p->measure);
-        b->log_f[c] = log(fmax(f, 1e-12));    /* a channel that a metal absorbs wholly */
+        /* no ray: half a ray is the least that can be told from nothing */
+        double power = p->rays > 0 ? fmax(p->power[c], 1) : 0.5 * ASPI_WEIGHT_ONE;
+        b->log_f[c] = log(power / (ASPI_WEIGHT_ONE * rays * p->measure));
         b->power += p->power[c];
     }
 }
 
-static void make_column(const aspi_counts *counts, int j, int k, column *col)
+/* The end of a column holds too few rays for a bin: more of the same as the last bin, if their
+ * number could be chance, else a bin of its own. */
+static void put_rest(column *col, const pending *last, const pending *rest, double rays)
 {
-    const aspi_cell *cells = counts->cells + ((size_t)j * ASPI_CELLS_PHI + (size_t)k) * ASPI_CELLS_H;
-    double rays = (double)counts->rays, total = 0;
-    for (int i = 0; i < ASPI_CELLS_H; ++i)
-        total += (double)cells[i].count;
-    double enough = fmax(25, fmin(1600, total / 40));
+    double expected = last->measure > 0 ? last->rays / last->measure * rest->measure : 0;
+    if (!col->n || fabs(rest->rays - expected) > 2 + 3 * sqrt(expected)) {
+        put_bin(col, rest, rays);
+        return;
+    }
+    pending both = *last;
+    add_pending(&both, rest);
+    --col->n;
+    put_bin(col, &both, rays);
+}
 
+static const aspi_cell *column_cells(const aspi_counts *counts, int j, int k)
+{
+    return counts->cells + ((size_t)j * ASPI_CELLS_PHI + (size_t)k) * ASPI_CELLS_H;
+}
+
+/* Where the bins of a row (all columns of one theta_d) end: ends[i] says that one ends with fine
+ * cell i. Equal counts where there is plenty, a quarter of what is still to come in the tail, so
+ * that f changes little within a bin. The columns of a row share their ends because a column that
+ * ended a bin when its own count is reached would do so after lucky cells, and read too high. */
+static void row_ends(const aspi_counts *counts, int j, int ends[ASPI_CELLS_H])
+{
+    double cells[ASPI_CELLS_H] = { 0 }, left = 0, held = 0, from = 0;
+    for (int k = 0; k < ASPI_CELLS_PHI; ++k)
+        for (int i = 0; i < ASPI_CELLS_H; ++i)
+            cells[i] += (double)column_cells(counts, j, k)[i].count / ASPI_CELLS_PHI;
+    for (int i = 0; i < ASPI_CELLS_H; ++i)
+        left += cells[i];
+    double plenty = fmin(1600, left / 40);
+    for (int i = 0; i < ASPI_CELLS_H; ++i) {
+        double root = (i + 1.0) / ASPI_CELLS_H, theta = 0.5 * ASPI_PI * root * root;
+        held += cells[i];
+        ends[i] = held >= fmax(FEWEST, fmin(plenty, left / 4))
+               || (theta - from > WIDEST && held >= FEWEST / 4);
+        if (ends[i]) {
+            left -= held;
+            held = 0;
+            from = theta;
+        }
+    }
+}
+
+static void make_column(const aspi_counts *counts, int j, int k, const int ends[ASPI_CELLS_H],
+                        column *col)
+{
+    const aspi_cell *cells = column_cells(counts, j, k);
+    double rays = (double)counts->rays;
     pending p = { 0 }, last = { 0 };
     col->n = 0;
     for (int i = 0; i < ASPI_CELLS_H; ++i) {
         double moment, m = measure(i, j, k, &moment), root = (i + 1.0) / ASPI_CELLS_H;
-        double theta = 0.5 * ASPI_PI * root * root;
-        p.rays += (double)cells[i].count;
-        p.power[0] += (double)cells[i].r;
-        p.power[1] += (double)cells[i].g;
-        p.power[2] += (double)cells[i].b;
-        p.measure += m;
-        p.moment += moment;
+        pending cell = { (double)cells[i].count, { (double)cells[i].r, (double)cells[i].g,
+                                                   (double)cells[i].b }, m, moment };
+        add_pending(&p, &cell);
         if (m > 0)
-            col->end = theta;
-        if (p.measure > 0
-            && (p.rays >= enough || (theta - p.from > WIDEST && p.rays >= FEWEST))) {
-            close_bin(col, &p, rays);
+            col->end = 0.5 * ASPI_PI * root * root;
+        if (p.measure > 0 && ends[i] && p.rays >= FEWEST / 8) {
+            put_bin(col, &p, rays);
             last = p;
-            p = (pending){ .from = theta };
+            p = (pending){ 0 };
         }
     }
-    if (p.measure > 0 && col->n) {    /* what is left at the end joins the last bin */
-        last.rays += p.rays;
-        last.measure += p.measure;
-        last.moment += p.moment;
-        for (int c = 0; c < 3; ++c)
-            last.power[c] += p.power[c];
-        --col->n;
-        close_bin(col, &last, rays);
-    }
+    if (p.measure > 0 && (col->n || p.rays > 0))
+        put_rest(col, &last, &p, rays);
 }
 
 /* log f of a column at theta_h^2 = square. Below the first bin along the slope of the first few, so
@@ -122,8 +163,8 @@ static double column_log(const column *col, double square, int channel)
         return b[high].log_f[channel];
     if (square < b[0].square) {
         int far = high < 3 ? high : 3;
-        double slope = (b[far].log_f[channel] - b[0].log_f[channel])
-                     / (b[far].square - b[0].square);
+        double slope = far ? (b[far].log_f[channel] - b[0].log_f[channel])
+                           / (b[far].square - b[0].square) : 0;
         return b[0].log_f[channel] + slope * (square - b[0].square);
     }
     while (high - low > 1) {
@@ -230,9 +271,12 @@ asp_status aspi_gonio_table(const aspi_counts *counts, double *values,
     column *columns = calloc(COLUMNS, sizeof *columns);
     if (!columns)
         return asp_fail(err, ASP_ENOMEM, "gonioreflectometer", "out of memory");
-    for (int j = 0; j < ASPI_CELLS_D; ++j)
+    for (int j = 0; j < ASPI_CELLS_D; ++j) {
+        int ends[ASPI_CELLS_H];
+        row_ends(counts, j, ends);
         for (int k = 0; k < ASPI_CELLS_PHI; ++k)
-            make_column(counts, j, k, &columns[j * ASPI_CELLS_PHI + k]);
+            make_column(counts, j, k, ends, &columns[j * ASPI_CELLS_PHI + k]);
+    }
     fill(columns, values);
     report->noise = median_error(columns, &report->cells);
     free(columns);
