@@ -232,8 +232,9 @@ static const cmd_option options[] = {
 
 const cmd_record cmd_check = {
     "check", "check distributions against the laws they must obey", "[SPEC...]", 0, -1,
-    "Without a SPEC: every distribution over representative parameters. For each law\n"
-    "the worst deviation, and what is allowed there. Exit status 1 when one is broken.\n"
+    "Without a SPEC: every distribution over representative parameters. For each\n"
+    "law the worst deviation, and what is allowed there. Exit status 1 when one is\n"
+    "broken.\n"
     "\n"
     "  asperity check student_t:alpha=0.3,gamma=1.6 ellipsoid:alpha=0.2,theta_x=0.7",
     options, run

@@ -108,7 +108,7 @@ static const cmd_option options[] = {
 
 const cmd_record cmd_render = {
     "render", "render a lit sphere of a material or a measurement", "", 0, 0,
-    "  asperity render --material 'conductor:metal=Au,ndf=(ggx:alpha=0.2)' -o gold.png\n"
+    "  asperity render --material 'conductor:metal=Au,ndf=(ggx:alpha=.2)' -o gold.png\n"
     "  asperity render --data chm_orange_rgb.bsdf -o orange.png\n"
     "\n"
     "Shows a bar with the time left when standard error is a terminal.",
