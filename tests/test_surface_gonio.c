@@ -83,6 +83,18 @@ static void test_grooves(void)
     double share = 1 + log(cos(0.35)) / 0.35;
     CHECK(fabs(twice / 5000.0 - share) < 0.02, "%.4f meet two walls, expected %.4f", twice / 5000.0,
           share);
+    /* a metal takes its share at both walls, at the angles 45 deg - t and 45 deg + t */
+    const asp_metal *gold = asp_find_metal("Au");
+    double t = 0.2, half = sqrt(0.5), fresnel = 0;
+    double expected = asp_fresnel_conductor(half * (cos(t) + sin(t)), gold->eta.b, gold->k.b)
+                    * asp_fresnel_conductor(half * (cos(t) - sin(t)), gold->eta.b, gold->k.b);
+    for (int i = 0; tracer && i < 100; ++i) {
+        aspi_path path;
+        if (aspi_trace(tracer, random_number(), random_number(), direction_of(t, 0), gold, &path)
+            && path.bounces == 2)
+            fresnel = fmax(fresnel, fabs(path.weight.b - expected));
+    }
+    CHECK(fresnel < 1e-12, "two bounces in gold off by %g", fresnel);
     aspi_tracer_free(tracer);
 
     /* shallow: straight down, either wall sends it to an angle twice its own */
@@ -102,6 +114,45 @@ static void test_grooves(void)
     CHECK(wrong == 0, "%d rays do not leave a shallow groove as they should", wrong);
     CHECK(abs(right - 2500) < 150, "%d of 5000 go right", right);
     aspi_tracer_free(tracer);
+}
+
+/* The same field moved by some steps is the same surface: no edge is seen. */
+static void test_no_edge(void)
+{
+    enum { N = 64, MOVED_X = 30, MOVED_Y = 22 };
+    asp_surface_recipe recipe = { .seed = 2, .size = N, .correlation = 4, .patch = 2, .alpha = 0.4,
+                                  .gamma = 3 };
+    asp_height_field field;
+    float moved[N * N];
+    asp_error err;
+    CHECK(asp_height_field_make(&recipe, &field, &err) == ASP_OK, "no surface");
+    for (int y = 0; y < N; ++y)
+        for (int x = 0; x < N; ++x)
+            moved[(y + MOVED_Y) % N * N + (x + MOVED_X) % N] = field.heights[y * N + x];
+    asp_height_field other = { N, N, 1, 1, 1, moved };
+    aspi_tracer *a = trace_field(&field), *b = trace_field(&other);
+    int same = 0, lost = 0, oblique = 0;
+    enum { RAYS = 50000 };
+    for (int i = 0; a && b && i < RAYS; ++i) {
+        double u = random_number(), v = random_number();
+        asp_vec3 wi = random_direction();
+        aspi_path p, q;
+        if (!aspi_trace(a, u, v, wi, NULL, &p)
+            || !aspi_trace(b, fmod(u + (double)MOVED_X / N, 1), fmod(v + (double)MOVED_Y / N, 1),
+                           wi, NULL, &q)) {
+            ++lost;
+            continue;
+        }
+        oblique += wi.z < 0.2;
+        same += distance(p.wo, q.wo) < 1e-9;
+    }
+    /* a ray within rounding of the edge of a facet may choose its neighbour */
+    printf("moved field: %d of %d rays the same, %d grazing\n", same, RAYS, oblique);
+    CHECK(lost == 0 && same > RAYS - RAYS / 500, "%d rays lost, %d the same", lost, same);
+    CHECK(oblique > RAYS / 10, "too few rays cross the edge");
+    aspi_tracer_free(a);
+    aspi_tracer_free(b);
+    asp_height_field_free(&field);
 }
 
 static void test_refused_fields(void)
@@ -356,6 +407,7 @@ int main(void)
 {
     test_flat();
     test_grooves();
+    test_no_edge();
     test_refused_fields();
     test_table_of_diffuser();
     test_energy();
