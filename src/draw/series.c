@@ -45,7 +45,7 @@ static int inside(const aspi_box *box, aspi_point p)
 /* ------------------------------------------------------------------ lines and markers */
 
 /* Steps shorter than this are joined: nobody sees them, and files with a million points stay small. */
-#define SHORTEST 0.2
+#define SHORTEST 0.3
 
 static void draw_line(aspi_text *text, const aspi_box *box, const aspi_point *points, size_t count)
 {
