@@ -204,8 +204,8 @@ static asp_measured *read_list(const aspi_bytes *file, aspi_lines lines, const a
 
 /* ------------------------------------------------------------------ rows by bin */
 
-/* The stored numbers of a row: f over the scale, with the digits beyond a double's kept until the
- * division is done (merl.c writes them). */
+/* The stored numbers of a row: f over the scale, rounded to double only after the division (merl.c
+ * says why). */
 static void store_bin(const aspi_header *h, const row *r, aspi_merl *merl, size_t at, size_t bins)
 {
     for (int c = 0; c < 3; c++) {

@@ -10,6 +10,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* What has no size of its own is read up to here, and not until memory ends. */
+#define LARGEST_PIPE ((size_t)1 << 30)
+
 void aspi_error_file(asp_error *err, const char *file)
 {
     if (!err || !file)
@@ -74,10 +77,10 @@ asp_status aspi_read_file(const char *path, unsigned char **bytes, size_t *size,
         int next = getc(file);
         if (next == EOF)
             break;
-        if (room > SIZE_MAX / 2) {
+        if (room > LARGEST_PIPE) {
             free(data);
-            data = NULL;
-            break;
+            fclose(file);
+            return io_fail(err, path, "more than 1 GB from a pipe or device", EFBIG);
         }
         room *= 2;
         unsigned char *more = realloc(data, room);

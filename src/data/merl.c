@@ -136,9 +136,11 @@ int aspi_merl_centre(const aspi_merl *merl, size_t i_h, size_t i_d, size_t i_p,
 /* ------------------------------------------------------------------ csv
  *
  * One row per bin, by index; rows of bins without a value (all three -1) are left out as long as a
- * quarter of the rows remains, which the reader asks for before it makes a table. The numbers are f in more digits than a double holds, so that the stored number itself comes back: where
- * long double is no wider than double, f comes back exactly and the stored number to one unit in
- * its last place. */
+ * quarter of the rows remains, which the reader asks for before it makes a table. The numbers are f,
+ * but what comes back is the stored number itself: 17 digits of the product place it within 5e-17 of
+ * its value, less than half the distance of two doubles (2^-54 = 5.6e-17 at the least), provided that
+ * product and quotient are rounded later than that, in long double. Where long double is no wider
+ * than double, it comes back to one unit in its last place. */
 
 static int is_blank_bin(const double *v, size_t bins)
 {
@@ -169,7 +171,7 @@ static asp_status merl_write_csv(const asp_measured *measured, aspi_out *out, as
                     long double f = (long double)v[(size_t)c * bins]
                                   * (long double)aspi_merl_scale[c];
                     row[n++] = ',';
-                    n += (int)aspi_format_long_double(f, 21, row + n);
+                    n += (int)aspi_format_long_double(f, 17, row + n);
                 }
                 row[n++] = '\n';
                 aspi_out_write(out, row, (size_t)n);
