@@ -1,0 +1,234 @@
+/* law_float32.c - float32 against float64 at the same float32 inputs
+ *
+ * Allowed are 2e-6, and 1e-4 where D is below 1e-6 of its peak. Three things are beyond any
+ * arithmetic of 24 bits and are added: a difference loses what cancels in it. They are the height
+ * w.z - t.w_xy of a view on a skewed surface, the standard slope M^-1 (p - t) where the map is
+ * skewed or turned, and the cosine w.m of a facet seen edge-on. Unskewed along the axes nothing is
+ * added to D and sigma. The numbers of the map are inputs as the directions are: float64 is given
+ * the same ones. */
+#include "laws/laws.h"
+
+#include <math.h>
+
+#define EPS 1.2e-7
+
+static asp_vec3f narrow(asp_vec3 v)
+{
+    asp_vec3f out;
+    out.x = (float)v.x;
+    out.y = (float)v.y;
+    out.z = (float)v.z;
+    return out;
+}
+
+static asp_vec3 widen(asp_vec3f v)
+{
+    asp_vec3 out;
+    out.x = v.x;
+    out.y = v.y;
+    out.z = v.z;
+    return out;
+}
+
+/* What rounding the terms of q = M^-1 (p - t) does to ln P22: 0 where nothing cancels. The slope of
+ * ln P22 is taken from P22 itself. */
+static double slope_rounding(const aspi_trial *t, asp_vec3 m)
+{
+    const asp_ndf *k = t->ndf;
+    double z = fabs(m.z) > 1e-30 ? fabs(m.z) : 1e-30;
+    double px = -m.x / z, py = -m.y / z, dx = px - k->map.tx, dy = py - k->map.ty;
+    double x = fabs(px) + fabs(k->map.tx), y = fabs(py) + fabs(k->map.ty);
+    double qx = k->i00 * dx + k->i01 * dy, qy = k->i10 * dx + k->i11 * dy;
+    double ex = fabs(k->i00) * x + fabs(k->i01) * y - fabs(qx);
+    double ey = fabs(k->i10) * x + fabs(k->i11) * y - fabs(qy);
+    double lost = EPS * (fmax(ex, 0) + fmax(ey, 0)), r = hypot(qx, qy), low, high;
+    if (!(lost > 1e-12 * (r + t->scale)))
+        return 0;
+    low = asp_P22(&t->standard, r + lost, 0);
+    high = asp_P22(&t->standard, r > lost ? r - lost : 0, 0);
+    return low > 0 ? log(high / low) : INFINITY;
+}
+
+static double density_allowance(const aspi_trial *t, asp_vec3 m, double D)
+{
+    asp_vec3 top = asp_mean_normal(t->ndf);
+    double z4 = m.z * m.z / (top.z * top.z), peak = asp_D(t->ndf, top);
+    /* of the peak in slopes: D = P22/cos^4 grows without bound towards vertical facets */
+    return (D * z4 * z4 < 1e-6 * peak ? 1e-4 : 2e-6) + slope_rounding(t, m);
+}
+
+/* Relative distance of x from the interval that a rounding of the view's height spans. */
+static double sigma_deviation(const aspi_trial *t, asp_vec3 w, double found)
+{
+    double h, s, step, low, high;
+    asp_vec3 v = { 0, 0, 0 };
+    aspi_standard_view(t->ndf, w, &h, &s);
+    step = EPS * (fabs(w.z) + fabs(t->ndf->map.tx * w.x) + fabs(t->ndf->map.ty * w.y));
+    if (!t->skewed)
+        step = 0;
+    v.x = s;
+    v.z = h - step;
+    low = asp_sigma(&t->standard, v);
+    v.z = h + step;
+    high = asp_sigma(&t->standard, v);
+    if (high < 1e-30)
+        return found < 1e-29 ? 0 : INFINITY;
+    return found < low ? (low - found) / low : found > high ? (found - high) / high
+         : found == found ? 0 : NAN;
+}
+
+static void compare_facets(aspi_trial *t)
+{
+    int i;
+    for (i = 0; i < 3000; i++) {
+        asp_vec3f mf = narrow(aspi_random_facet(t));
+        asp_vec3 m = widen(mf);
+        double D = asp_D(t->ndf, m), found = asp_Df(&t->ndff, mf);
+        double pdf = asp_pdf_normalf(&t->ndff, mf);
+        if (!(m.z > 2e-9) || D > 1e37)
+            continue;
+        if (D > 1e-30)
+            aspi_find(t, fabs(found - D) / D, density_allowance(t, m, D),
+                      "D, m = (%.7g, %.7g, %.7g): %.9g, float64 %.9g", m.x, m.y, m.z, found, D);
+        else
+            aspi_find(t, found, 2e-30, "D, m = (%.7g, %.7g, %.7g): not gone", m.x, m.y, m.z);
+        if (D * m.z > 1e-30)
+            aspi_find(t, fabs(pdf - D * m.z) / (D * m.z), density_allowance(t, m, D),
+                      "pdf_normal, m = (%.7g, %.7g, %.7g)", m.x, m.y, m.z);
+        {
+            float px = -mf.x / mf.z, py = -mf.y / mf.z;
+            double P22 = asp_P22(t->ndf, px, py), other = asp_P22f(&t->ndff, px, py);
+            if (P22 > 1e-30 && P22 < 1e37) {
+                asp_vec3 n = { 0, 0, 1 };
+                n.x = -px;
+                n.y = -py;
+                aspi_find(t, fabs(other - P22) / P22, density_allowance(t, n, P22),
+                          "P22(%.7g, %.7g): %.9g, float64 %.9g", (double)px, (double)py, other,
+                          P22);
+            }
+        }
+    }
+}
+
+static void compare_views(aspi_trial *t)
+{
+    int i, k;
+    for (i = 0; i < 600; i++) {
+        asp_vec3f wf;
+        asp_vec3 w = aspi_random_direction(t);
+        double found, rounding, h, s;
+        if (i % 3 == 0)
+            w = t->views[(size_t)i / 3 % t->view_count].w;
+        if (i % 3 == 1)
+            w = aspi_unit(w.x, w.y, w.z * exp(-12 * aspi_uniform(t)));
+        wf = narrow(w);
+        w = widen(wf);
+        found = asp_sigmaf(&t->ndff, wf);
+        aspi_standard_view(t->ndf, w, &h, &s);
+        /* far below the mean plane sigma is a tail: 1e-4 below 1e-6 of its height at the plane */
+        rounding = asp_sigma(t->ndf, w) < 1e-6 * s * t->scale ? 1e-4 : 2e-6;
+        aspi_find(t, sigma_deviation(t, w, found), rounding,
+                  "sigma, w = (%.7g, %.7g, %.7g): %.9g, float64 %.9g", w.x, w.y, w.z, found,
+                  asp_sigma(t->ndf, w));
+        if (w.z <= 0)
+            continue;
+        for (k = 0; k < 2; k++) {
+            int mask = k ? ASP_MASK_WALL : 0;
+            double G1 = asp_G1(t->ndf, w, mask), other = asp_G1f(&t->ndff, wf, mask);
+            double lost = t->skewed ? 4 * EPS * (1 + hypot(t->ndf->map.tx, t->ndf->map.ty))
+                        / asp_sigma(t->ndf, w) : 0;
+            aspi_find(t, fabs(other - G1) / G1, rounding + fmin(lost, 1),
+                      "G1%s, w = (%.7g, %.7g, %.7g): %.9g, float64 %.9g", k ? " wall" : "", w.x,
+                      w.y, w.z, other, G1);
+        }
+    }
+}
+
+static void compare_visible(aspi_trial *t)
+{
+    int i;
+    for (i = 0; i < 1500; i++) {
+        asp_vec3f wf = narrow(t->views[(size_t)i % t->view_count].w);
+        asp_vec3f mf = narrow(aspi_random_facet(t));
+        asp_vec3 w = widen(wf), m = widen(mf);
+        double pdf = asp_pdf_visible(t->ndf, w, m), found = asp_pdf_visiblef(&t->ndff, wf, mf);
+        double c = aspi_dot(w, m), sigma = asp_sigma(t->ndf, w), lost;
+        if (!(pdf > 1e-30 && pdf < 1e37 && sigma > 1e-12 && m.z > 2e-9))
+            continue;
+        lost = 2 * EPS / c + (t->skewed ? 4 * EPS * (1 + hypot(t->ndf->map.tx, t->ndf->map.ty))
+               / sigma : 0);
+        aspi_find(t, fabs(found - pdf) / pdf, density_allowance(t, m, asp_D(t->ndf, m))
+                  + fmin(lost, 1) + (sigma < 1e-6 * t->scale ? 1e-4 : 0),
+                  "pdf_visible, %s, m = (%.7g, %.7g, %.7g): %.9g, float64 %.9g",
+                  t->views[(size_t)i % t->view_count].name, m.x, m.y, m.z, found, pdf);
+    }
+}
+
+/* Samples of one (u1, u2): the same facet within 1e-5 of its slope's length plus the roughness. u
+ * near 1 is left out: there 1 - u itself has only a few bits, in the input. */
+static void compare_samples(aspi_trial *t)
+{
+    int i;
+    for (i = 0; i < 1000; i++) {
+        float u1 = (float)(0.98 * aspi_uniform(t)), u2 = (float)(0.98 * aspi_uniform(t));
+        const aspi_view *v = &t->views[(size_t)i % t->view_count];
+        asp_vec3f wf = narrow(v->w);
+        asp_vec3 a, b;
+        double size, stretch = hypot(hypot(t->ndf->map.m00, t->ndf->map.m01),
+                                     hypot(t->ndf->map.m10, t->ndf->map.m11));
+        const char *name = i % 2 ? v->name : "normals";
+        if (i % 2) {
+            a = widen(asp_sample_visiblef(&t->ndff, wf, u1, u2));
+            b = asp_sample_visible(t->ndf, widen(wf), u1, u2);
+        } else {
+            a = widen(asp_sample_normalf(&t->ndff, u1, u2));
+            b = asp_sample_normal(t->ndf, u1, u2);
+        }
+        if (!(asp_sigma(t->ndf, v->w) > 1e-3)) /* so little is seen that height's rounding rules */
+            continue;
+        size = hypot(hypot(b.x, b.y), b.z * stretch * t->scale) + b.z * (t->skewed
+             ? hypot(t->ndf->map.tx, t->ndf->map.ty) : 0);
+        size = fmin(size, 1);
+        aspi_find(t, hypot(a.x - b.x, a.y - b.y), 1e-5 * size,
+                  "sample of %s, u = (%.7g, %.7g): (%.7g, %.7g, %.7g), float64 (%.7g, %.7g, %.7g)",
+                  name, u1, u2, a.x, a.y, a.z, b.x, b.y, b.z);
+        aspi_find(t, fabs(a.z - b.z), 1e-5 * size * size + EPS,
+                  "sample of %s, u = (%.7g, %.7g): (%.7g, %.7g, %.7g), float64 (%.7g, %.7g, %.7g)",
+                  name, u1, u2, a.x, a.y, a.z, b.x, b.y, b.z);
+    }
+}
+
+/* float64's shape and table, float32's map. */
+static asp_ndf widened(const asp_ndf *ndf, const asp_ndff *f)
+{
+    asp_ndf out = *ndf;
+    out.map.m00 = f->map.m00;
+    out.map.m01 = f->map.m01;
+    out.map.m10 = f->map.m10;
+    out.map.m11 = f->map.m11;
+    out.map.tx = f->map.tx;
+    out.map.ty = f->map.ty;
+    out.i00 = f->i00;
+    out.i01 = f->i01;
+    out.i10 = f->i10;
+    out.i11 = f->i11;
+    out.inv_det = f->inv_det;
+    return out;
+}
+
+void aspi_law_float32(aspi_trial *t)
+{
+    const asp_ndf *ndf = t->ndf;
+    asp_ndf wide = widened(ndf, &t->ndff);
+    t->ndf = &wide;
+    compare_facets(t);
+    aspi_tick(t, 0.3);
+    if (!t->cancelled)
+        compare_views(t);
+    aspi_tick(t, 0.5);
+    if (!t->cancelled)
+        compare_visible(t);
+    if (!t->cancelled)
+        compare_samples(t);
+    t->ndf = ndf;
+}

@@ -1,0 +1,140 @@
+/* law_scatter.c - laws of scattering over the distribution: a mirror under every masking, gold, and
+ * a diffuse base under a coat */
+#include "laws/laws.h"
+
+#include <math.h>
+
+enum { MIRRORS = 5, MATERIALS = ASPI_MATERIALS };
+static const int masks[MIRRORS] = { ASP_MASK_CORRELATED, ASP_MASK_UNCORRELATED, ASP_MASK_V_CAVITY,
+                                    ASP_MASK_CORRELATED | ASP_MASK_WALL,
+                                    ASP_MASK_UNCORRELATED | ASP_MASK_WALL };
+static const char *const names[MATERIALS] = { "mirror correlated", "mirror uncorrelated",
+                                              "mirror v_cavity", "mirror correlated+wall",
+                                              "mirror uncorrelated+wall", "conductor",
+                                              "lambert_specular" };
+
+asp_material aspi_material(const asp_ndf *ndf, int kind, const char **name)
+{
+    static const asp_rgb eta = { 0.17, 0.39, 1.45 }, k = { 3.5, 2.4, 1.9 };
+    static const asp_rgb diffuse = { 0.4, 0.2, 0.05 }, specular = { 1, 0.9, 0.8 };
+    *name = names[kind];
+    if (kind < MIRRORS)
+        return asp_mirror(ndf, masks[kind]);
+    if (kind == MIRRORS)
+        return asp_conductor(ndf, eta, k, ASP_MASK_CORRELATED);
+    return asp_lambert_specular(ndf, diffuse, specular, 1.5, ASP_MASK_CORRELATED);
+}
+
+static asp_vec3 up(asp_vec3 w)
+{
+    if (w.z < 0)
+        w.x = -w.x, w.y = -w.y, w.z = -w.z;
+    return w;
+}
+
+static double largest(asp_rgb c) { return fmax(c.r, fmax(c.g, c.b)); }
+
+static double difference(asp_rgb a, asp_rgb b)
+{
+    return fmax(fabs(a.r - b.r), fmax(fabs(a.g - b.g), fabs(a.b - b.b)));
+}
+
+void aspi_law_reciprocity(aspi_trial *t)
+{
+    int kind, i;
+    const char *name;
+    for (kind = 0; kind < MATERIALS; kind++) {
+        asp_material mat = aspi_material(t->ndf, kind, &name);
+        for (i = 0; i < 300; i++) {
+            asp_vec3 wi = up(aspi_random_direction(t)), wo = up(aspi_random_direction(t)), m;
+            asp_rgb a, b;
+            double steps;
+            if (i % 2) { /* a pair that shines */
+                m = aspi_random_facet(t);
+                wo = aspi_unit(2 * aspi_dot(wi, m) * m.x - wi.x, 2 * aspi_dot(wi, m) * m.y - wi.y,
+                               2 * aspi_dot(wi, m) * m.z - wi.z);
+                if (wo.z <= 0)
+                    continue;
+            }
+            a = asp_eval(&mat, wi, wo);
+            b = asp_eval(&mat, wo, wi);
+            /* opposite directions: the cosine to the half vector is |wi + wo|/2, in steps of eps
+             * over |wi + wo| */
+            steps = aspi_dot(wi, wo) + 1;
+            steps = 1e-15 / fmax(steps, 1e-15);
+            aspi_find(t, difference(a, b) / fmax(largest(a), 1e-200), 1e-13 + steps,
+                      "%s, wi (%.6g, %.6g, %.6g), wo (%.6g, %.6g, %.6g)", name, wi.x, wi.y, wi.z,
+                      wo.x, wo.y, wo.z);
+            aspi_find(t, !(a.r >= 0 && a.g >= 0 && a.b >= 0), 0, "%s: negative f", name);
+        }
+    }
+}
+
+void aspi_law_furnace(aspi_trial *t)
+{
+    size_t i;
+    int kind;
+    const char *name;
+    for (i = 0; i < t->view_count; i++)
+        for (kind = 0; kind < MIRRORS; kind++) {
+            asp_material mat = aspi_material(t->ndf, kind, &name);
+            double doubt, albedo;
+            /* grooves are those of a level surface: on a skewed one they return up to twice what
+             * came. Their kinks near the horizon are too fine for the cubature */
+            if (kind == 2 && (t->skewed || t->views[i].w.z < 1e-4))
+                continue;
+            albedo = aspi_albedo(&mat, t->views[i].w, 1e-6, &doubt);
+            aspi_find(t, fmax(0, albedo - 1), 1e-7 + fmin(doubt, 1e-4), "%s, %s: albedo %.9g", name,
+                      t->views[i].name, albedo);
+            aspi_find(t, !(albedo >= 0), 0, "%s, %s: albedo %.9g", name, t->views[i].name, albedo);
+            if (aspi_tick(t, (double)(i * MIRRORS + (size_t)kind)
+                          / (double)(t->view_count * MIRRORS)))
+                return;
+        }
+}
+
+void aspi_law_weight(aspi_trial *t)
+{
+    int kind, i;
+    const char *name;
+    for (kind = 0; kind < MATERIALS; kind++) {
+        asp_material mat = aspi_material(t->ndf, kind, &name);
+        for (i = 0; i < 400; i++) {
+            const aspi_view *v = &t->views[(size_t)i % t->view_count];
+            asp_bsdf_sample s = asp_sample(&mat, v->w, aspi_uniform(t), aspi_uniform(t));
+            asp_rgb f = asp_eval_cos(&mat, v->w, s.wo), again = asp_eval(&mat, v->w, s.wo), w;
+            double pdf = asp_pdf(&mat, v->w, s.wo), size, apart, scale, steps;
+            asp_vec3 h = aspi_unit(v->w.x + s.wo.x, v->w.y + s.wo.y, v->w.z + s.wo.z);
+            double norm = s.wo.x * s.wo.x + s.wo.y * s.wo.y + s.wo.z * s.wo.z;
+            aspi_find(t, fabs(norm - 1), 1e-14, "%s, %s: wo is not a unit vector", name, v->name);
+            aspi_find(t, !(s.pdf >= 0) || !(largest(s.weight) >= 0), 0,
+                      "%s, %s: pdf %g, weight %g", name, v->name, s.pdf, largest(s.weight));
+            if (s.wo.z <= 0) {
+                aspi_find(t, largest(s.weight), 0, "%s, %s: weight below the horizon", name,
+                          v->name);
+                continue;
+            }
+            if (kind < MIRRORS && kind != 2) /* grooves know nothing of this distribution */
+                aspi_find(t, s.weight.r - 1, 1e-9, "%s, %s: weight above 1", name, v->name);
+            /* wo carries the facet in its last digits: the half vector of wi and wo is known to
+             * eps over |wi + wo|, its slope to that over h.z^2, and D moves with slope/roughness */
+            apart = hypot(hypot(v->w.x + s.wo.x, v->w.y + s.wo.y), v->w.z + s.wo.z);
+            size = fabs(t->ndf->i00) + fabs(t->ndf->i01) + fabs(t->ndf->i10) + fabs(t->ndf->i11);
+            scale = hypot(h.x, h.y) / h.z + hypot(t->ndf->map.tx, t->ndf->map.ty) + 1e-3;
+            steps = 1e-15 / apart / h.z * (1 / h.z + size * scale / t->scale * 40 + 1 / s.wo.z);
+            if (steps > 1e-3 || pdf < 1e-200)
+                continue;
+            w = s.weight;
+            w.r *= s.pdf; w.g *= s.pdf; w.b *= s.pdf;
+            aspi_find(t, difference(w, f) / fmax(largest(f), 1e-200), 1e-11 + steps,
+                      "%s, %s, wo (%.6g, %.6g, %.6g): weight pdf %.15g, f cos %.15g", name,
+                      v->name, s.wo.x, s.wo.y, s.wo.z, w.r, f.r);
+            aspi_find(t, fabs(s.pdf - pdf) / pdf, 1e-11 + steps,
+                      "%s, %s, wo (%.6g, %.6g, %.6g): pdf of the sample %.15g, asp_pdf %.15g",
+                      name, v->name, s.wo.x, s.wo.y, s.wo.z, s.pdf, pdf);
+            again.r *= s.wo.z; again.g *= s.wo.z; again.b *= s.wo.z;
+            aspi_find(t, difference(again, f) / fmax(largest(f), 1e-200), 1e-14,
+                      "%s, %s: eval cos against eval_cos", name, v->name);
+        }
+    }
+}

@@ -1,0 +1,154 @@
+/* laws.h - what the files of the laws share */
+#ifndef ASPI_LAWS_H
+#define ASPI_LAWS_H
+
+#include "asperity_data.h"
+#include "asperity_ndf.h"
+
+/* ---- a check under way */
+
+typedef struct aspi_view {
+    asp_vec3 w;
+    const char *name;
+} aspi_view;
+
+#define ASPI_VIEWS 12
+
+typedef struct aspi_trial {
+    const asp_ndf *ndf;
+    asp_ndff ndff;
+    asp_ndf standard;             /* the same shape through the identity map */
+    double det;                   /* |det M| */
+    double scale;                 /* median slope of the standard surface */
+    int skewed;
+    size_t samples;
+    uint64_t state;               /* of the generator, reset for each law */
+    aspi_view views[ASPI_VIEWS];  /* above the horizon, from the normal to grazing */
+    size_t view_count;
+    asp_law_result *result;
+    double ratio;                 /* of the worst finding: deviation / allowed */
+    asp_progress *progress;
+    void *context;
+    double done, share;           /* progress made before this law, and what the law is worth */
+    int cancelled;
+    int no_memory;
+} aspi_trial;
+
+/* A law: what it says, and the function that looks. `weight`: its share of the time. */
+typedef struct aspi_law_row {
+    asp_law law;
+    void (*check)(aspi_trial *t);
+    double weight;
+} aspi_law_row;
+
+/* One comparison. A deviation that is not a number counts as infinite. `where` is printf's. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 4, 5)))
+#endif
+void aspi_find(aspi_trial *t, double deviation, double allowed, const char *where, ...);
+
+/* Tells the caller how far the law is, in [0, 1]; nonzero: stop. */
+int aspi_tick(aspi_trial *t, double done);
+
+/* The laws, one function each. */
+void aspi_law_normalisation(aspi_trial *t);
+void aspi_law_slope_density(aspi_trial *t);
+void aspi_law_mean_slope(aspi_trial *t);
+void aspi_law_slope_map(aspi_trial *t);
+void aspi_law_rotation(aspi_trial *t);
+void aspi_law_matrix(aspi_trial *t);
+void aspi_law_sigma(aspi_trial *t);
+void aspi_law_sigma_flip(aspi_trial *t);
+void aspi_law_G1(aspi_trial *t);
+void aspi_law_G2(aspi_trial *t);
+void aspi_law_wall(aspi_trial *t);
+void aspi_law_density_normal(aspi_trial *t);
+void aspi_law_density_visible(aspi_trial *t);
+void aspi_law_reciprocity(aspi_trial *t);
+void aspi_law_furnace(aspi_trial *t);
+void aspi_law_weight(aspi_trial *t);
+void aspi_law_sample_normal(aspi_trial *t);
+void aspi_law_sample_visible(aspi_trial *t);
+void aspi_law_sample_bsdf(aspi_trial *t);
+void aspi_law_weight_histogram(aspi_trial *t);
+void aspi_law_continuity(aspi_trial *t);
+void aspi_law_float32(aspi_trial *t);
+void aspi_law_batch(aspi_trial *t);
+void aspi_law_finite(aspi_trial *t);
+void aspi_law_nan(aspi_trial *t);
+
+/* ---- vectors */
+
+#define ASPI_PI 3.14159265358979323846
+
+asp_vec3 aspi_unit(double x, double y, double z);
+double aspi_dot(asp_vec3 a, asp_vec3 b);
+/* The direction at angle theta from the normal and azimuth phi. */
+asp_vec3 aspi_direction(double theta, double phi);
+/* p = M q + t and back. */
+asp_vec2 aspi_map_slope(const asp_map *map, double qx, double qy);
+/* Slope of m in the standard frame, in polar form; infinite radius for m.z <= 0. */
+void aspi_standard_polar(const asp_ndf *ndf, asp_vec3 m, double *r, double *phi);
+/* Height and horizontal length of w' = (M^T w_xy, w.z - w_xy.t): what sigma sees. */
+void aspi_standard_view(const asp_ndf *ndf, asp_vec3 w, double *height, double *length);
+/* Density of standard slopes times r^2, from D of the mapped surface. */
+double aspi_r2_density(const aspi_trial *t, double r, double phi);
+
+/* Seven materials over a distribution: five mirrors, a conductor, a mixture (law_scatter.c). */
+#define ASPI_MATERIALS 7
+asp_material aspi_material(const asp_ndf *ndf, int kind, const char **name);
+
+/* ---- random numbers and statistics (statistics.c) */
+
+double aspi_uniform(aspi_trial *t);              /* [0, 1), 53 bits */
+asp_vec3 aspi_random_direction(aspi_trial *t);   /* unit sphere, uniform */
+/* A facet normal from the surface itself, and now and then far out in its tail. */
+asp_vec3 aspi_random_facet(aspi_trial *t);
+
+/* Q(dof/2, chi2/2): probability that chi-square is larger by chance. */
+double aspi_chi_square_p(double chi2, double dof);
+/* -log10 of the probability that the least of `tests` p-values is as small as p (Sidak 1967). */
+double aspi_sidak(double p, size_t tests);
+
+/* A histogram of facets in the polar standard slope: rings at quantiles of a pilot sample, equal
+ * sectors; the last ring is one open cell. */
+#define ASPI_RINGS 16
+#define ASPI_SECTORS 16
+#define ASPI_CELLS ((ASPI_RINGS - 1) * ASPI_SECTORS + 1)
+typedef struct aspi_histogram {
+    double edge[ASPI_RINGS - 1];                 /* outer radius of each ring but the last */
+    double phi0;
+    double count[ASPI_CELLS], sum[ASPI_CELLS], sum2[ASPI_CELLS];
+    double density[ASPI_CELLS], value[ASPI_CELLS];  /* integrals of a density and of another value */
+} aspi_histogram;
+
+/* Per unit solid angle of facets, at facet m: a probability density and another value. */
+typedef void aspi_facet_function(const void *context, asp_vec3 m, double *density, double *value);
+
+void aspi_histogram_edges(aspi_histogram *h, double *radii, size_t count, double phi0);
+void aspi_histogram_add(aspi_histogram *h, const asp_ndf *ndf, asp_vec3 m, double weight);
+void aspi_histogram_integrate(aspi_histogram *h, const aspi_trial *t, aspi_facet_function *f,
+                              const void *context);
+/* p of counts against density, and of weight sums against value (cells with 100 samples or more,
+ * without the open cell). */
+double aspi_histogram_count_p(const aspi_histogram *h, double samples);
+double aspi_histogram_weight_p(const aspi_histogram *h, double samples);
+
+/* ---- quadrature (quadrature.c) */
+
+/* Nodes and weights of Gauss-Legendre's rule on [0, 1], n <= 32. */
+void aspi_gauss(int n, double *node, double *weight);
+
+/* Integral of f(r) dr/r over all r > 0 by the trapezoidal rule in log r; what lies beyond the last
+ * node is the geometric series that the last nodes follow. Scale-free: no roughness is assumed. */
+typedef double aspi_radial_function(const void *context, double r, int index);
+double aspi_radial_integral(aspi_radial_function *f, const void *context);
+
+/* sigma of a view of height w and horizontal length s in the standard frame, from D alone. */
+double aspi_sigma_by_quadrature(const aspi_trial *t, double w, double s);
+
+/* Directional albedo of the first channel, integral of eval_cos over wo, by adaptive cubature in
+ * the slope plane; wi.z > 0. error (may be NULL): an estimate. tolerance is absolute. */
+double aspi_albedo(const asp_material *mat, asp_vec3 wi, double tolerance, double *error);
+
+#endif
