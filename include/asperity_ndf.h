@@ -58,12 +58,14 @@ typedef struct asp_param {
     const char *what;     /* a line for `asperity list` */
 } asp_param;
 
-/* The formulas in one precision: single, and over a block of n elements that do not overlap. */
+/* The formulas in one precision: single, and over a block of n elements that do not overlap.
+ * ndf_loops.h makes them. Vectors go number by number: small structs of floats pass through memory
+ * in the usual calling convention and stall there. */
 typedef struct asp_ndf_ops {
     double (*density)(const asp_ndf *k, double r2, double z2);
     double (*sigma)(const asp_ndf *k, double w, double s2);
-    asp_vec3 (*visible)(const asp_ndf *k, asp_vec3 v, double u1, double u2);
-    asp_vec3 (*normal)(const asp_ndf *k, double u1, double u2);
+    void (*visible)(const asp_ndf *k, double vx, double vy, double vz, double u1, double u2, double m[3]);
+    void (*normal)(const asp_ndf *k, double u1, double u2, double m[3]);
     void (*density_n)(const asp_ndf *k, size_t n, const double *r2, const double *z2, double *out);
     void (*sigma_n)(const asp_ndf *k, size_t n, const double *w, const double *s2, double *out);
     void (*visible_n)(const asp_ndf *k, size_t n, const double *vx, const double *vy,
@@ -76,8 +78,8 @@ typedef struct asp_ndf_ops {
 typedef struct asp_ndf_opsf {
     float (*density)(const asp_ndff *k, float r2, float z2);
     float (*sigma)(const asp_ndff *k, float w, float s2);
-    asp_vec3f (*visible)(const asp_ndff *k, asp_vec3f v, float u1, float u2);
-    asp_vec3f (*normal)(const asp_ndff *k, float u1, float u2);
+    void (*visible)(const asp_ndff *k, float vx, float vy, float vz, float u1, float u2, float m[3]);
+    void (*normal)(const asp_ndff *k, float u1, float u2, float m[3]);
     void (*density_n)(const asp_ndff *k, size_t n, const float *r2, const float *z2, float *out);
     void (*sigma_n)(const asp_ndff *k, size_t n, const float *w, const float *s2, float *out);
     void (*visible_n)(const asp_ndff *k, size_t n, const float *vx, const float *vy,
@@ -116,7 +118,7 @@ struct asp_model {
 #define ASP_RECORD const
 #endif
 
-#define ASP_NDF_OPS_(n, s) { n##density##s, n##sigma##s, n##visible##s, n##normal##s, \
+#define ASP_NDF_OPS_(n, s) { n##density##s, n##sigma##s, n##visible_1##s, n##normal_1##s, \
     n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s }
 #define ASP_NDF_OPS(n) ASP_NDF_OPS_(n##_, _64), ASP_NDF_OPS_(n##_, _32)
 

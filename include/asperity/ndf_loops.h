@@ -1,6 +1,27 @@
-/* ndf_loops.h - the four formulas of a distribution as loops over blocks
+/* ndf_loops.h - the four formulas of a distribution as functions and as loops over blocks
  *
  * Read once per precision, after the formulas. Nothing here knows which distribution it serves. */
+
+static void ndf_visible_1(const asp_shape *k, asp_real vx, asp_real vy, asp_real vz, asp_real u1,
+                          asp_real u2, asp_real out[3])
+{
+    asp_v3 v, m;
+    v.x = vx;
+    v.y = vy;
+    v.z = vz;
+    m = ndf_visible(k, v, u1, u2);
+    out[0] = m.x;
+    out[1] = m.y;
+    out[2] = m.z;
+}
+
+static void ndf_normal_1(const asp_shape *k, asp_real u1, asp_real u2, asp_real out[3])
+{
+    asp_v3 m = ndf_normal(k, u1, u2);
+    out[0] = m.x;
+    out[1] = m.y;
+    out[2] = m.z;
+}
 
 ASP_CLONES static void ndf_density_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT r2,
                                      const asp_real *ASP_RESTRICT z2, asp_real *ASP_RESTRICT out)

@@ -62,6 +62,8 @@
 #define ndf_sigma ASP_NDF_NAME(_sigma)
 #define ndf_visible ASP_NDF_NAME(_visible)
 #define ndf_normal ASP_NDF_NAME(_normal)
+#define ndf_visible_1 ASP_NDF_NAME(_visible_1)
+#define ndf_normal_1 ASP_NDF_NAME(_normal_1)
 #define ndf_density_n ASP_NDF_NAME(_density_n)
 #define ndf_sigma_n ASP_NDF_NAME(_sigma_n)
 #define ndf_visible_n ASP_NDF_NAME(_visible_n)

@@ -13,18 +13,17 @@
 #undef ASP_PRECISION
 #undef ASP_NDF
 
-static asp_status parse(aspi_spec *spec, asp_material *out, asp_error *err)
+static asp_status conductor_parse(aspi_spec *spec, asp_material *out, asp_error *err)
 {
     out->b.r = out->b.g = out->b.b = 1.0;
     return aspi_parse_fresnel(spec, 0.0, out, err);
 }
 
-static const aspi_bsdf_key keys[] = { ASPI_FRESNEL_KEYS, { NULL, NULL } };
+static const aspi_bsdf_key conductor_keys[] = { ASPI_FRESNEL_KEYS, { NULL, NULL } };
 
 ASP_RECORD asp_bsdf asp_bsdf_conductor = {
-    "conductor", "Rough conductor", "Walter et al. 2007, eq. 20", keys, 0, parse,
-    conductor_value_64, conductor_value_32, conductor_value_n_64, conductor_value_n_32,
-    conductor_share_64, conductor_share_32
+    "conductor", "Rough conductor", "Walter et al. 2007, eq. 20", conductor_keys, 0, conductor_parse,
+    ASPI_BSDF_OPS(conductor)
 };
 
 #else

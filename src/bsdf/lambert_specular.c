@@ -14,7 +14,7 @@
 #undef ASP_PRECISION
 #undef ASP_NDF
 
-static asp_status parse(aspi_spec *spec, asp_material *out, asp_error *err)
+static asp_status lambert_specular_parse(aspi_spec *spec, asp_material *out, asp_error *err)
 {
     asp_status s;
     out->a.r = out->a.g = out->a.b = 0.5;
@@ -25,16 +25,15 @@ static asp_status parse(aspi_spec *spec, asp_material *out, asp_error *err)
     return s ? s : aspi_parse_fresnel(spec, 1.5, out, err);
 }
 
-static const aspi_bsdf_key keys[] = {
+static const aspi_bsdf_key lambert_specular_keys[] = {
     { "diffuse", "albedo of the Lambertian term, default 0.5" },
     { "specular", "scale of the reflection, default 1" },
     ASPI_FRESNEL_KEYS, { NULL, NULL }
 };
 
 ASP_RECORD asp_bsdf asp_bsdf_lambert_specular = {
-    "lambert_specular", "Lambert + rough reflection", "Ribardiere et al. 2017, section 5", keys, 1,
-    parse, lambert_specular_value_64, lambert_specular_value_32, lambert_specular_value_n_64,
-    lambert_specular_value_n_32, lambert_specular_share_64, lambert_specular_share_32
+    "lambert_specular", "Lambert + rough reflection", "Ribardiere et al. 2017, section 5",
+    lambert_specular_keys, 1, lambert_specular_parse, ASPI_BSDF_OPS(lambert_specular)
 };
 
 #else

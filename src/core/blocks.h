@@ -1,7 +1,7 @@
 /* blocks.h - what facets.c offers to the scattering models: quantities over one block
  *
  * Batches are worked through in blocks that stay in the first-level cache. n <= ASPI_BLOCK; arrays
- * do not overlap. Read once per precision, after asperity/number.h. */
+ * do not overlap, n is not 0. Read once per precision, after asperity/number.h. */
 
 #ifndef ASPI_BLOCKS_ONCE
 #define ASPI_BLOCKS_ONCE

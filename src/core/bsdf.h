@@ -24,16 +24,21 @@ struct asp_bsdf {
     /* Reads the model's own keys and the Fresnel term's. */
     asp_status (*parse)(aspi_spec *spec, asp_material *out, asp_error *err);
     /* f from F and from x = D G2 / (4 cos_i cos_o), with y multiplying what does not come from
-     * facets; the caller may scale x and y alike. */
-    asp_rgb  (*value)(const asp_material *mat, asp_rgb F, double x, double y);
-    asp_rgbf (*valuef)(const asp_materialf *mat, asp_rgbf F, float x, float y);
+     * facets; the caller may scale x and y alike. F goes in and f comes out in the same three
+     * numbers. */
+    void (*value)(const asp_material *mat, double x, double y, double F[3]);
+    void (*valuef)(const asp_materialf *mat, float x, float y, float F[3]);
     void (*value_n)(const asp_material *mat, size_t n, const double *x, const double *y, double *r,
                     double *g, double *b);
     void (*value_nf)(const asp_materialf *mat, size_t n, const float *x, const float *y, float *r,
                      float *g, float *b);
     /* The share of samples spent on visible normals, from F at cos_i; used when mixed. */
-    double (*share)(const asp_material *mat, asp_rgb F);
-    float  (*sharef)(const asp_materialf *mat, asp_rgbf F);
+    double (*share)(const asp_material *mat, const double F[3]);
+    float  (*sharef)(const asp_materialf *mat, const float F[3]);
+    void (*share_n)(const asp_material *mat, size_t n, const double *r, const double *g,
+                    const double *b, double *share);
+    void (*share_nf)(const asp_materialf *mat, size_t n, const float *r, const float *g,
+                     const float *b, float *share);
 };
 
 /* The keys that name a Fresnel term: metal, eta with k, eta alone, f0 with tint. `initial` is taken
@@ -46,5 +51,9 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
     { "k", "extinction coefficient" }, \
     { "f0", "reflectance at normal incidence, Schlick's term" }, \
     { "tint", "with f0: factor at 82 degrees (F82-tint), 1 = Schlick" }
+
+/* The formulas of a record, in the order of struct asp_bsdf. */
+#define ASPI_BSDF_OPS(n) n##_value_1_64, n##_value_1_32, n##_value_n_64, n##_value_n_32, \
+    n##_share_1_64, n##_share_1_32, n##_share_n_64, n##_share_n_32
 
 #endif

@@ -2,8 +2,11 @@
 #ifndef ASPI_BSDF_NUMBER_ONCE
 #define ASPI_BSDF_NUMBER_ONCE
 #define bsdf_value ASP_NDF_NAME(_value)
+#define bsdf_value_1 ASP_NDF_NAME(_value_1)
+#define bsdf_share_1 ASP_NDF_NAME(_share_1)
 #define bsdf_value_n ASP_NDF_NAME(_value_n)
 #define bsdf_share ASP_NDF_NAME(_share)
+#define bsdf_share_n ASP_NDF_NAME(_share_n)
 #endif
 #undef asp_mat
 #if ASP_PRECISION == 64

@@ -1,7 +1,7 @@
 /* facet.h - directions, normals and masking through the slope map, in both precisions
  *
  * The standard surface sees everything through p = M q + t (see asperity.h section 3). Read after
- * asperity/elementary.h. */
+ * asperity/elementary.h and core/blocks.h. */
 
 #ifndef ASPI_FACET_NAMES
 #define ASPI_FACET_NAMES
@@ -11,6 +11,10 @@
 #define aspi_dot ASP_NAME(aspi_dot)
 #define aspi_length2 ASP_NAME(aspi_length2)
 #define aspi_normalize ASP_NAME(aspi_normalize)
+#define aspi_density_arguments ASP_NAME(aspi_density_arguments)
+#define aspi_density_result ASP_NAME(aspi_density_result)
+#define aspi_visible ASP_NAME(aspi_visible)
+#define aspi_normal ASP_NAME(aspi_normal)
 #define aspi_masked ASP_NAME(aspi_masked)
 #define aspi_hidden ASP_NAME(aspi_hidden)
 #define aspi_joint ASP_NAME(aspi_joint)
@@ -79,6 +83,47 @@ ASP_FN asp_v3 aspi_facet_back(const asp_shape *k, asp_v3 m)
     v.y = (k->map.m10 * m.x + k->map.m11 * m.y) - k->map.ty * m.z;
     v.z = m.z;
     return v;
+}
+
+/* The distribution's single samplers, mapped back. Needs core/blocks.h. */
+ASP_FN asp_v3 aspi_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+{
+    asp_real m[3];
+    asp_v3 out;
+    ASPI_OPS(k).visible(k, v.x, v.y, v.z, u1, u2, m);
+    out.x = m[0];
+    out.y = m[1];
+    out.z = m[2];
+    return aspi_normalize(aspi_facet_back(k, out));
+}
+
+ASP_FN asp_v3 aspi_normal(const asp_shape *k, asp_real u1, asp_real u2)
+{
+    asp_real m[3];
+    asp_v3 out;
+    ASPI_OPS(k).normal(k, u1, u2, m);
+    out.x = m[0];
+    out.y = m[1];
+    out.z = m[2];
+    return aspi_normalize(aspi_facet_back(k, out));
+}
+
+/* What the distribution's density takes for D(m): z2 is 1 where the facet is vertical or turned down,
+ * and aspi_density_result makes that 0. */
+ASP_FN asp_v2 aspi_density_arguments(const asp_shape *k, asp_v3 m)
+{
+    asp_v3 v = aspi_facet(k, m);
+    asp_v2 a;
+    a.x = aspi_length2(v);
+    a.y = v.z <= ASPI_FLAT ? R(1.0) : v.z * v.z;
+    return a;
+}
+
+/* D(m) = D_std(m') / |det M|; 0 for facets that are vertical or turned down. */
+ASP_FN asp_real aspi_density_result(const asp_shape *k, asp_real standard, asp_real mz)
+{
+    asp_real d = aspi_finite(standard * k->inv_det);
+    return mz <= ASPI_FLAT ? R(0.0) : d;
 }
 
 /* The projected area that masking divides by, w.z / G1: never less than w.z. `min`: Walter et al.

@@ -20,8 +20,6 @@
 
 #ifndef ASPI_FACETS_NAMES
 #define ASPI_FACETS_NAMES
-#define density_arguments ASP_NAME(density_arguments)
-#define density_result ASP_NAME(density_result)
 #define visible_density ASP_NAME(visible_density)
 #define masking ASP_NAME(masking)
 #define lambda_of ASP_NAME(lambda_of)
@@ -44,22 +42,6 @@
 #define OUT asp_real *ASP_RESTRICT
 
 /* ---- formulas around the standard surface's */
-
-ASP_FN asp_v2 density_arguments(const asp_shape *k, asp_v3 m)
-{
-    asp_v3 v = aspi_facet(k, m);
-    asp_v2 a;
-    a.x = aspi_length2(v);
-    a.y = v.z <= ASPI_FLAT ? R(1.0) : v.z * v.z;
-    return a;
-}
-
-/* D(m) = D_std(m') / |det M|; 0 for facets that are vertical or turned down. */
-ASP_FN asp_real density_result(const asp_shape *k, asp_real standard, asp_real mz)
-{
-    asp_real d = aspi_finite(standard * k->inv_det);
-    return mz <= ASPI_FLAT ? R(0.0) : d;
-}
 
 /* max(0, w.m) D(m) / sigma(w). */
 ASP_FN asp_real visible_density(asp_real cosine, asp_real density, asp_real sigma)
@@ -100,8 +82,8 @@ ASP_FN asp_real joint_masking(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_v3 m
 
 asp_real ASPI_CALL(asp_D)(const asp_shape *k, asp_v3 m)
 {
-    asp_v2 a = density_arguments(k, m);
-    return density_result(k, ASPI_OPS(k).density(k, a.x, a.y), m.z);
+    asp_v2 a = aspi_density_arguments(k, m);
+    return aspi_density_result(k, ASPI_OPS(k).density(k, a.x, a.y), m.z);
 }
 
 asp_real ASPI_CALL(asp_P22)(const asp_shape *k, asp_real p_x, asp_real p_y)
@@ -139,12 +121,12 @@ asp_real ASPI_CALL(asp_G2)(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_v3 m, i
 
 asp_v3 ASPI_CALL(asp_sample_normal)(const asp_shape *k, asp_real u1, asp_real u2)
 {
-    return aspi_normalize(aspi_facet_back(k, ASPI_OPS(k).normal(k, u1, u2)));
+    return aspi_normal(k, u1, u2);
 }
 
 asp_v3 ASPI_CALL(asp_sample_visible)(const asp_shape *k, asp_v3 wi, asp_real u1, asp_real u2)
 {
-    return aspi_normalize(aspi_facet_back(k, ASPI_OPS(k).visible(k, aspi_view(k, wi), u1, u2)));
+    return aspi_visible(k, aspi_view(k, wi), u1, u2);
 }
 
 asp_real ASPI_CALL(asp_pdf_normal)(const asp_shape *k, asp_v3 m)
@@ -186,7 +168,7 @@ ASP_CLONES static void loop_density_in(const asp_shape *k, size_t n, IN x, IN y,
         m.x = x[i];
         m.y = y[i];
         m.z = z[i];
-        a = density_arguments(k, m);
+        a = aspi_density_arguments(k, m);
         r2[i] = a.x;
         z2[i] = a.y;
         mz[i] = m.z;
@@ -197,7 +179,7 @@ ASP_CLONES static void loop_density_out(const asp_shape *k, size_t n, IN standar
 {
     size_t i;
     for (i = 0; i < n; i++)
-        out[i] = density_result(k, standard[i], mz[i]);
+        out[i] = aspi_density_result(k, standard[i], mz[i]);
 }
 
 /* height and squared length of the standard view; sign = -1 looks from below */
@@ -348,6 +330,8 @@ ASP_CLONES static void loop_scale(size_t n, asp_real by, IN a, OUT out)
 void aspi_block_density(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
 {
     asp_real r2[ASPI_BLOCK], z2[ASPI_BLOCK], mz[ASPI_BLOCK], d[ASPI_BLOCK];
+    if (!n)
+        return;
     loop_density_in(k, n, m.x, m.y, m.z, r2, z2, mz);
     ASPI_OPS(k).density_n(k, n, r2, z2, d);
     loop_density_out(k, n, d, mz, out);

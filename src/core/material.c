@@ -30,8 +30,13 @@
 #define lobe_density ASP_NAME(lobe_density)
 #define mixed_density ASP_NAME(mixed_density)
 #define fresnel_of ASP_NAME(fresnel_of)
+#define value_of ASP_NAME(value_of)
 #define share_of ASP_NAME(share_of)
 #define eval_scaled ASP_NAME(eval_scaled)
+#define density_of ASP_NAME(density_of)
+#define sigma_of ASP_NAME(sigma_of)
+#define sample_pure ASP_NAME(sample_pure)
+#define sample_mixed ASP_NAME(sample_mixed)
 #define block_fresnel ASP_NAME(block_fresnel)
 #define block_share ASP_NAME(block_share)
 #define block_eval ASP_NAME(block_eval)
@@ -114,47 +119,76 @@ ASP_FN asp_real mixed_density(asp_real ci, asp_real co, asp_real lobe, asp_real 
     return ci <= R(0.0) ? R(0.0) : p;
 }
 
-static asp_c3 fresnel_of(const asp_mat *mat, asp_real c)
+/* Numbers go by pointer: small structs of floats stall in the usual calling convention. */
+static void fresnel_of(const asp_mat *mat, asp_real c, asp_real F[3])
 {
-    asp_c3 F;
     switch (mat->fresnel) {
     case ASPI_FRESNEL_CONDUCTOR:
-        F.r = aspi_fresnel_conductor(c, mat->c.r, mat->d.r);
-        F.g = aspi_fresnel_conductor(c, mat->c.g, mat->d.g);
-        F.b = aspi_fresnel_conductor(c, mat->c.b, mat->d.b);
+        F[0] = aspi_fresnel_conductor(c, mat->c.r, mat->d.r);
+        F[1] = aspi_fresnel_conductor(c, mat->c.g, mat->d.g);
+        F[2] = aspi_fresnel_conductor(c, mat->c.b, mat->d.b);
         break;
     case ASPI_FRESNEL_F82:
-        F.r = aspi_fresnel_f82(c, mat->c.r, mat->d.r);
-        F.g = aspi_fresnel_f82(c, mat->c.g, mat->d.g);
-        F.b = aspi_fresnel_f82(c, mat->c.b, mat->d.b);
+        F[0] = aspi_fresnel_f82(c, mat->c.r, mat->d.r);
+        F[1] = aspi_fresnel_f82(c, mat->c.g, mat->d.g);
+        F[2] = aspi_fresnel_f82(c, mat->c.b, mat->d.b);
         break;
     case ASPI_FRESNEL_DIELECTRIC:
-        F.r = F.g = F.b = aspi_fresnel_dielectric(c, mat->c.r);
+        F[0] = F[1] = F[2] = aspi_fresnel_dielectric(c, mat->c.r);
         break;
     default:
-        F.r = F.g = F.b = c == c ? R(1.0) : c;
+        F[0] = F[1] = F[2] = c == c ? R(1.0) : c;
     }
-    return F;
+}
+
+/* The model's value from the Fresnel term at c. */
+ASP_FN asp_c3 value_of(const asp_mat *mat, asp_real c, asp_real x, asp_real y)
+{
+    asp_real F[3];
+    asp_c3 out;
+    fresnel_of(mat, c, F);
+    mat->model->ASPI_MODEL_CALL(value)(mat, x, y, F);
+    out.r = F[0];
+    out.g = F[1];
+    out.b = F[2];
+    return out;
 }
 
 /* ---- single calls */
 
+/* D(m) and sigma(w) without leaving this file. */
+ASP_FN asp_real density_of(const asp_shape *k, asp_v3 m)
+{
+    asp_v2 a = aspi_density_arguments(k, m);
+    return aspi_density_result(k, ASPI_OPS(k).density(k, a.x, a.y), m.z);
+}
+
+ASP_FN asp_real sigma_of(const asp_shape *k, asp_v3 w)
+{
+    asp_v3 v = aspi_view(k, w);
+    return ASPI_OPS(k).sigma(k, v.z, aspi_length2(v));
+}
+
 static asp_real share_of(const asp_mat *mat, asp_real ci)
 {
-    return mat->model->mixed ? mat->model->ASPI_MODEL_CALL(share)(mat, fresnel_of(mat, ci)) : R(1.0);
+    asp_real F[3];
+    if (!mat->model->mixed)
+        return R(1.0);
+    fresnel_of(mat, ci, F);
+    return mat->model->ASPI_MODEL_CALL(share)(mat, F);
 }
 
 /* f times by, where `by` is 1 or a cosine. */
-static asp_c3 eval_scaled(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real by)
+ASP_FN asp_c3 eval_scaled(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real by)
 {
     const asp_shape *k = &mat->ndf;
     asp_v3 m = half_vector(wi, wo);
     asp_real c = aspi_dot(wi, m);
-    asp_real D = ASPI_CALL(asp_D)(k, m);
-    asp_real x = facet_part(k, wi, wo, m.z, c, ASPI_CALL(asp_sigma)(k, wi),
-                            ASPI_CALL(asp_sigma)(k, wo), R(0.25) * D, mat->mask);
+    asp_real D = density_of(k, m);
+    asp_real x = facet_part(k, wi, wo, m.z, c, sigma_of(k, wi),
+                            sigma_of(k, wo), R(0.25) * D, mat->mask);
     asp_real y = aspi_min(wi.z, wo.z) <= R(0.0) ? R(0.0) : by;
-    return mat->model->ASPI_MODEL_CALL(value)(mat, fresnel_of(mat, c), x * y, y);
+    return value_of(mat, c, x * y, y);
 }
 
 asp_c3 ASPI_CALL(asp_eval)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
@@ -170,39 +204,55 @@ asp_c3 ASPI_CALL(asp_eval_cos)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 asp_real ASPI_CALL(asp_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 {
     asp_v3 m = half_vector(wi, wo);
-    asp_real lobe = lobe_density(wi.z, ASPI_CALL(asp_D)(&mat->ndf, m),
-                                 ASPI_CALL(asp_sigma)(&mat->ndf, wi));
+    asp_real lobe = lobe_density(wi.z, density_of(&mat->ndf, m),
+                                 sigma_of(&mat->ndf, wi));
     return mat->model->mixed ? mixed_density(wi.z, wo.z, lobe, share_of(mat, wi.z)) : lobe;
+}
+
+/* Visible normals only: D cancels in the weight, which is F J sigma_i cos_o. */
+ASP_FN asp_sampled sample_pure(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
+{
+    const asp_shape *k = &mat->ndf;
+    asp_v3 v = aspi_view(k, wi);
+    asp_real sigma_i = ASPI_OPS(k).sigma(k, v.z, aspi_length2(v));
+    asp_v3 m = aspi_visible(k, v, u1, u2);
+    asp_real c = aspi_dot(wi, m), x;
+    asp_sampled out;
+    out.wo = reflect(wi, m);
+    out.pdf = lobe_density(wi.z, density_of(k, m), sigma_i);
+    x = out.wo.z * facet_part(k, wi, out.wo, m.z, c, sigma_i, sigma_of(k, out.wo), sigma_i,
+                              mat->mask);
+    out.weight = value_of(mat, c, x, x);
+    return out;
+}
+
+/* Facets or base by u1, which is stretched again; the density is that of the mixture. */
+static asp_sampled sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
+{
+    const asp_shape *k = &mat->ndf;
+    asp_v3 v = aspi_view(k, wi), m;
+    asp_real sigma_i = ASPI_OPS(k).sigma(k, v.z, aspi_length2(v));
+    asp_real share = share_of(mat, wi.z), c, D, x, y, scale;
+    asp_sampled out;
+    int facet = u1 < share;
+    u1 = facet ? u1 / share : (u1 - share) / (R(1.0) - share);
+    m = aspi_visible(k, v, u1, u2);
+    out.wo = facet ? reflect(wi, m) : cosine_lobe(u1, u2);
+    m = half_vector(wi, out.wo);
+    c = aspi_dot(wi, m);
+    D = density_of(k, m);
+    out.pdf = mixed_density(wi.z, out.wo.z, lobe_density(wi.z, D, sigma_i), share);
+    y = aspi_min(wi.z, out.wo.z) <= R(0.0) || out.pdf <= R(0.0) ? R(0.0) : out.wo.z / out.pdf;
+    scale = out.pdf <= R(0.0) ? R(0.0) : R(0.25) * D / out.pdf;
+    x = out.wo.z * facet_part(k, wi, out.wo, m.z, c, sigma_i, sigma_of(k, out.wo), scale,
+                              mat->mask);
+    out.weight = value_of(mat, c, x, y);
+    return out;
 }
 
 asp_sampled ASPI_CALL(asp_sample)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
 {
-    const asp_shape *k = &mat->ndf;
-    asp_sampled out;
-    asp_v3 m;
-    asp_real share = share_of(mat, wi.z), sigma_i = ASPI_CALL(asp_sigma)(k, wi);
-    asp_real c, D, sigma_o, x, y, scale;
-    int facet = u1 < share || !mat->model->mixed;
-    if (mat->model->mixed)
-        u1 = facet ? u1 / share : (u1 - share) / (R(1.0) - share);
-    m = ASPI_CALL(asp_sample_visible)(k, wi, u1, u2);
-    out.wo = facet ? reflect(wi, m) : cosine_lobe(u1, u2);
-    if (mat->model->mixed)
-        m = half_vector(wi, out.wo);
-    c = aspi_dot(wi, m);
-    D = ASPI_CALL(asp_D)(k, m);
-    sigma_o = ASPI_CALL(asp_sigma)(k, out.wo);
-    out.pdf = lobe_density(wi.z, D, sigma_i);
-    scale = sigma_i;
-    y = R(0.0);
-    if (mat->model->mixed) {
-        out.pdf = mixed_density(wi.z, out.wo.z, out.pdf, share);
-        y = aspi_min(wi.z, out.wo.z) <= R(0.0) || out.pdf <= R(0.0) ? R(0.0) : out.wo.z / out.pdf;
-        scale = out.pdf <= R(0.0) ? R(0.0) : R(0.25) * D / out.pdf;
-    }
-    x = out.wo.z * facet_part(k, wi, out.wo, m.z, c, sigma_i, sigma_o, scale, mat->mask);
-    out.weight = mat->model->ASPI_MODEL_CALL(value)(mat, fresnel_of(mat, c), x, y);
-    return out;
+    return mat->model->mixed ? sample_mixed(mat, wi, u1, u2) : sample_pure(mat, wi, u1, u2);
 }
 
 /* ---- loops */
@@ -409,9 +459,9 @@ static void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c, asp_r
 
 static void block_share(const asp_mat *mat, size_t n, const asp_real *ci, asp_real *share)
 {
-    size_t i;
-    for (i = 0; i < n; i++)
-        share[i] = share_of(mat, ci[i]);
+    asp_real F[3][ASPI_BLOCK];
+    block_fresnel(mat, n, ci, F[0], F[1], F[2]);
+    mat->model->ASPI_MODEL_CALL(share_n)(mat, n, F[0], F[1], F[2], share);
 }
 
 /* f, or f cos_o where cosine is 1. Outputs may be inputs: they are written last. */
