@@ -55,10 +55,11 @@ ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
 ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
 {
     asp_real s2 = v.x * v.x + v.y * v.y;
-    asp_real scale = R(1.0) / aspi_sqrt(s2 + v.z * v.z);
-    asp_real z = v.z * scale;
-    asp_real up = R(1.0) + aspi_abs(z);
-    asp_real a = v.z < R(0.0) ? s2 * scale * scale / up : up;
+    asp_real length = aspi_sqrt(s2 + v.z * v.z);
+    asp_real up = length + aspi_abs(v.z);
+    asp_real inverse = R(1.0) / (length * up);
+    asp_real scale = up * inverse;
+    asp_real a = (v.z < R(0.0) ? s2 : up * up) * inverse;
     asp_real d = u1 * a;
     asp_real r = aspi_sqrt(d * aspi_max(R(2.0) - d, R(0.0)));
     asp_v2 t = aspi_sincos2pi(u2);
