@@ -85,9 +85,9 @@ static void test_cut_and_gaps(void)
     CHECK(moves == 2 && fabs(farthest - d.radius) < 0.05, "cut: %d strokes, reaches %g of %g", moves, farthest,
           d.radius);
     free(svg);
-    angle[100] = 1.7;           /* below the horizon */
+    angle[440] = 1.7;           /* below the horizon */
     r[400] = NAN;
-    r[600] = -1;
+    r[500] = -1;
     polar.radius = (asp_axis){ .low = 0, .high = 3 };
     svg = draw(&polar);
     path_points(series_part(svg, "lobe"), points, 3000, &moves);
