@@ -216,6 +216,11 @@ static void check_damage(void)
     bad = good;
     memset(bad.bytes + offset_of(&bad, "vndf") + 36, 0, 36);
     expect_refusal(bad.bytes, bad.data, "zero.bsdf", 2, "vndf", "slice 1 is zero");
+    bad = good;                                            /* a description may be empty */
+    set(&bad, entry_of(&bad, "description") + 11, 0, 8);
+    asp_measured *m = asp_measured_read_memory(bad.bytes, bad.data, "empty.bsdf", &err);
+    CHECK(m && !asp_measured_get_info(m).description[0], "an empty description is read");
+    asp_measured_free(m);
     bad = good;
     bad.bytes[12] = 2;
     expect_refusal(bad.bytes, bad.data, "version.bsdf", 1, "version 2.0");

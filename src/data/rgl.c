@@ -187,6 +187,8 @@ static asp_status check_shapes(const aspi_bytes *file, const aspi_tensor *t, asp
                                                     : "elements must be float32", err);
         if (t[i].rank != rank[i])
             return fail_field(file, &t[i], "wrong number of dimensions", err);
+        if (!t[i].elements && i != DESCRIPTION)
+            return fail_field(file, &t[i], "a size of 0", err);
     }
     for (int i = NDF; i <= RGB; i++) {
         int last = t[i].rank - 1;

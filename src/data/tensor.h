@@ -16,7 +16,7 @@ typedef struct aspi_tensor {
     const char *name;
     int      type, rank;
     uint64_t size[ASPI_TENSOR_RANK];
-    size_t   elements;                   /* product of the sizes; the data lie inside the file */
+    size_t   elements;                   /* product of the sizes, may be 0; the data lie inside the file */
     size_t   offset;
     size_t   entry;                      /* where the field's entry stands, for errors */
 } aspi_tensor;
