@@ -58,6 +58,15 @@ typedef struct asp_param {
     const char *what;     /* a line for `asperity list` */
 } asp_param;
 
+/* Everything a reflection needs of the surface: a visible normal seen from wi by its height and its
+ * cosine to wi, the mirrored direction, D, and the projected areas from both. */
+typedef struct asp_reflection {
+    double wo_x, wo_y, wo_z, m_z, cosine, density, sigma_i, sigma_o;
+} asp_reflection;
+typedef struct asp_reflectionf {
+    float wo_x, wo_y, wo_z, m_z, cosine, density, sigma_i, sigma_o;
+} asp_reflectionf;
+
 /* The formulas in one precision: single, and over a block of n elements that do not overlap.
  * ndf_loops.h makes them. Vectors go number by number: small structs of floats pass through memory
  * in the usual calling convention and stall there. */
@@ -66,6 +75,8 @@ typedef struct asp_ndf_ops {
     double (*sigma)(const asp_ndf *k, double w, double s2);
     void (*visible)(const asp_ndf *k, double vx, double vy, double vz, double u1, double u2, double m[3]);
     void (*normal)(const asp_ndf *k, double u1, double u2, double m[3]);
+    void (*reflect)(const asp_ndf *k, double wi_x, double wi_y, double wi_z, double u1, double u2,
+                    asp_reflection *out);
     void (*density_n)(const asp_ndf *k, size_t n, const double *r2, const double *z2, double *out);
     void (*sigma_n)(const asp_ndf *k, size_t n, const double *w, const double *s2, double *out);
     void (*visible_n)(const asp_ndf *k, size_t n, const double *vx, const double *vy,
@@ -80,6 +91,8 @@ typedef struct asp_ndf_opsf {
     float (*sigma)(const asp_ndff *k, float w, float s2);
     void (*visible)(const asp_ndff *k, float vx, float vy, float vz, float u1, float u2, float m[3]);
     void (*normal)(const asp_ndff *k, float u1, float u2, float m[3]);
+    void (*reflect)(const asp_ndff *k, float wi_x, float wi_y, float wi_z, float u1, float u2,
+                    asp_reflectionf *out);
     void (*density_n)(const asp_ndff *k, size_t n, const float *r2, const float *z2, float *out);
     void (*sigma_n)(const asp_ndff *k, size_t n, const float *w, const float *s2, float *out);
     void (*visible_n)(const asp_ndff *k, size_t n, const float *vx, const float *vy,
@@ -118,7 +131,7 @@ struct asp_model {
 #define ASP_RECORD const
 #endif
 
-#define ASP_NDF_OPS_(n, s) { n##density##s, n##sigma##s, n##visible_1##s, n##normal_1##s, \
+#define ASP_NDF_OPS_(n, s) { n##density##s, n##sigma##s, n##visible_1##s, n##normal_1##s, n##reflect_1##s, \
     n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s }
 #define ASP_NDF_OPS(n) ASP_NDF_OPS_(n##_, _64), ASP_NDF_OPS_(n##_, _32)
 

@@ -2,6 +2,8 @@
  *
  * Read once per precision, after the formulas. Nothing here knows which distribution it serves. */
 
+#include "asperity/facet.h"
+
 static void ndf_visible_1(const asp_shape *k, asp_real vx, asp_real vy, asp_real vz, asp_real u1,
                           asp_real u2, asp_real out[3])
 {
@@ -21,6 +23,30 @@ static void ndf_normal_1(const asp_shape *k, asp_real u1, asp_real u2, asp_real 
     out[0] = m.x;
     out[1] = m.y;
     out[2] = m.z;
+}
+
+/* One call for a whole reflection: what calls in turn would pass through memory stays in registers. */
+static void ndf_reflect_1(const asp_shape *k, asp_real wx, asp_real wy, asp_real wz, asp_real u1,
+                          asp_real u2, asp_mirrored *out)
+{
+    asp_v3 wi, wo, v, m;
+    asp_v2 a;
+    wi.x = wx;
+    wi.y = wy;
+    wi.z = wz;
+    v = aspi_view(k, wi);
+    out->sigma_i = ndf_sigma(k, v.z, aspi_length2(v));
+    m = aspi_normalize(aspi_facet_back(k, ndf_visible(k, v, u1, u2)));
+    a = aspi_density_arguments(k, m);
+    out->density = aspi_density_result(k, ndf_density(k, a.x, a.y), m.z);
+    wo = aspi_reflect(wi, m);
+    v = aspi_view(k, wo);
+    out->sigma_o = ndf_sigma(k, v.z, aspi_length2(v));
+    out->wo_x = wo.x;
+    out->wo_y = wo.y;
+    out->wo_z = wo.z;
+    out->m_z = m.z;
+    out->cosine = aspi_dot(wi, m);
 }
 
 ASP_CLONES static void ndf_density_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT r2,

@@ -64,6 +64,7 @@
 #define ndf_normal ASP_NDF_NAME(_normal)
 #define ndf_visible_1 ASP_NDF_NAME(_visible_1)
 #define ndf_normal_1 ASP_NDF_NAME(_normal_1)
+#define ndf_reflect_1 ASP_NDF_NAME(_reflect_1)
 #define ndf_density_n ASP_NDF_NAME(_density_n)
 #define ndf_sigma_n ASP_NDF_NAME(_sigma_n)
 #define ndf_visible_n ASP_NDF_NAME(_visible_n)
@@ -80,6 +81,7 @@
 #undef asp_v2
 #undef asp_c3
 #undef asp_shape
+#undef asp_mirrored
 #if ASP_PRECISION == 64
 #define ASP_SUFFIX _64
 #define asp_real double
@@ -88,6 +90,7 @@
 #define asp_v2 asp_vec2
 #define asp_c3 asp_rgb
 #define asp_shape asp_ndf
+#define asp_mirrored asp_reflection
 #elif ASP_PRECISION == 32
 #define ASP_SUFFIX _32
 #define asp_real float
@@ -96,6 +99,7 @@
 #define asp_v2 asp_vec2f
 #define asp_c3 asp_rgbf
 #define asp_shape asp_ndff
+#define asp_mirrored asp_reflectionf
 #else
 #error "define ASP_PRECISION as 64 or 32"
 #endif

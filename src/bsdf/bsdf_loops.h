@@ -1,15 +1,16 @@
 /* bsdf_loops.h - a scattering model's formulas as functions and as loops */
 
-static void bsdf_value_1(const asp_mat *mat, asp_real x, asp_real y, asp_real F[3])
+static void bsdf_value_1(const asp_mat *mat, asp_real F_r, asp_real F_g, asp_real F_b, asp_real x,
+                         asp_real y, asp_c3 *out)
 {
-    asp_c3 c;
-    c.r = F[0];
-    c.g = F[1];
-    c.b = F[2];
-    c = bsdf_value(mat, c, x, y);
-    F[0] = c.r;
-    F[1] = c.g;
-    F[2] = c.b;
+    asp_c3 F;
+    F.r = F_r;
+    F.g = F_g;
+    F.b = F_b;
+    F = bsdf_value(mat, F, x, y);
+    out->r = F.r;
+    out->g = F.g;
+    out->b = F.b;
 }
 
 static asp_real bsdf_share_1(const asp_mat *mat, const asp_real F[3])

@@ -24,10 +24,11 @@ struct asp_bsdf {
     /* Reads the model's own keys and the Fresnel term's. */
     asp_status (*parse)(aspi_spec *spec, asp_material *out, asp_error *err);
     /* f from F and from x = D G2 / (4 cos_i cos_o), with y multiplying what does not come from
-     * facets; the caller may scale x and y alike. F goes in and f comes out in the same three
-     * numbers. */
-    void (*value)(const asp_material *mat, double x, double y, double F[3]);
-    void (*valuef)(const asp_materialf *mat, float x, float y, float F[3]);
+     * facets; the caller may scale x and y alike. The loop's r, g, b hold F and receive f. */
+    void (*value)(const asp_material *mat, double F_r, double F_g, double F_b, double x, double y,
+                  asp_rgb *out);
+    void (*valuef)(const asp_materialf *mat, float F_r, float F_g, float F_b, float x, float y,
+                   asp_rgbf *out);
     void (*value_n)(const asp_material *mat, size_t n, const double *x, const double *y, double *r,
                     double *g, double *b);
     void (*value_nf)(const asp_materialf *mat, size_t n, const float *x, const float *y, float *r,

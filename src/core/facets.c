@@ -14,13 +14,14 @@
 #undef ASP_PRECISION
 
 #else
-#include "asperity/elementary.h"
+#include "asperity/facet.h"
 #include "core/blocks.h"
-#include "core/facet.h"
 
 #ifndef ASPI_FACETS_NAMES
 #define ASPI_FACETS_NAMES
 #define visible_density ASP_NAME(visible_density)
+#define visible_of ASP_NAME(visible_of)
+#define normal_of ASP_NAME(normal_of)
 #define masking ASP_NAME(masking)
 #define lambda_of ASP_NAME(lambda_of)
 #define joint_masking ASP_NAME(joint_masking)
@@ -46,7 +47,7 @@
 /* max(0, w.m) D(m) / sigma(w). */
 ASP_FN asp_real visible_density(asp_real cosine, asp_real density, asp_real sigma)
 {
-    asp_real p = cosine * density / (sigma < ASPI_SMALLEST ? ASPI_SMALLEST : sigma);
+    asp_real p = cosine * density / (sigma < ASP_SMALLEST ? ASP_SMALLEST : sigma);
     return cosine <= R(0.0) ? R(0.0) : aspi_finite(p);
 }
 
@@ -79,6 +80,29 @@ ASP_FN asp_real joint_masking(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_v3 m
 }
 
 /* ---- single calls */
+
+/* The distribution's single samplers, mapped back. */
+ASP_FN asp_v3 visible_of(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+{
+    asp_real m[3];
+    asp_v3 out;
+    ASPI_OPS(k).visible(k, v.x, v.y, v.z, u1, u2, m);
+    out.x = m[0];
+    out.y = m[1];
+    out.z = m[2];
+    return aspi_normalize(aspi_facet_back(k, out));
+}
+
+ASP_FN asp_v3 normal_of(const asp_shape *k, asp_real u1, asp_real u2)
+{
+    asp_real m[3];
+    asp_v3 out;
+    ASPI_OPS(k).normal(k, u1, u2, m);
+    out.x = m[0];
+    out.y = m[1];
+    out.z = m[2];
+    return aspi_normalize(aspi_facet_back(k, out));
+}
 
 asp_real ASPI_CALL(asp_D)(const asp_shape *k, asp_v3 m)
 {
@@ -121,12 +145,12 @@ asp_real ASPI_CALL(asp_G2)(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_v3 m, i
 
 asp_v3 ASPI_CALL(asp_sample_normal)(const asp_shape *k, asp_real u1, asp_real u2)
 {
-    return aspi_normal(k, u1, u2);
+    return normal_of(k, u1, u2);
 }
 
 asp_v3 ASPI_CALL(asp_sample_visible)(const asp_shape *k, asp_v3 wi, asp_real u1, asp_real u2)
 {
-    return aspi_visible(k, aspi_view(k, wi), u1, u2);
+    return visible_of(k, aspi_view(k, wi), u1, u2);
 }
 
 asp_real ASPI_CALL(asp_pdf_normal)(const asp_shape *k, asp_v3 m)

@@ -15,16 +15,15 @@
 #undef ASP_PRECISION
 
 #else
-#include "asperity/elementary.h"
+#include "asperity/facet.h"
 #include "asperity/fresnel.h"
 #include "core/blocks.h"
 #include "core/bsdf_number.h"
-#include "core/facet.h"
+
 
 #ifndef ASPI_MATERIAL_NAMES
 #define ASPI_MATERIAL_NAMES
 #define half_vector ASP_NAME(half_vector)
-#define reflect ASP_NAME(reflect)
 #define cosine_lobe ASP_NAME(cosine_lobe)
 #define facet_part ASP_NAME(facet_part)
 #define lobe_density ASP_NAME(lobe_density)
@@ -74,15 +73,6 @@ ASP_FN asp_v3 half_vector(asp_v3 wi, asp_v3 wo)
     return aspi_normalize(wi);
 }
 
-ASP_FN asp_v3 reflect(asp_v3 wi, asp_v3 m)
-{
-    asp_real d = R(2.0) * aspi_dot(wi, m);
-    m.x = d * m.x - wi.x;
-    m.y = d * m.y - wi.y;
-    m.z = d * m.z - wi.z;
-    return m;
-}
-
 /* A direction with density cos / pi. */
 ASP_FN asp_v3 cosine_lobe(asp_real u1, asp_real u2)
 {
@@ -108,7 +98,7 @@ ASP_FN asp_real facet_part(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_real mz
 /* Visible normals through reflection: D / (4 sigma_i). */
 ASP_FN asp_real lobe_density(asp_real ci, asp_real D, asp_real sigma_i)
 {
-    asp_real p = aspi_finite(R(0.25) * D / (sigma_i < ASPI_SMALLEST ? ASPI_SMALLEST : sigma_i));
+    asp_real p = aspi_finite(R(0.25) * D / (sigma_i < ASP_SMALLEST ? ASP_SMALLEST : sigma_i));
     return ci <= R(0.0) ? R(0.0) : p;
 }
 
@@ -120,7 +110,7 @@ ASP_FN asp_real mixed_density(asp_real ci, asp_real co, asp_real lobe, asp_real 
 }
 
 /* Numbers go by pointer: small structs of floats stall in the usual calling convention. */
-static void fresnel_of(const asp_mat *mat, asp_real c, asp_real F[3])
+ASP_FN void fresnel_of(const asp_mat *mat, asp_real c, asp_real F[3])
 {
     switch (mat->fresnel) {
     case ASPI_FRESNEL_CONDUCTOR:
@@ -142,16 +132,11 @@ static void fresnel_of(const asp_mat *mat, asp_real c, asp_real F[3])
 }
 
 /* The model's value from the Fresnel term at c. */
-ASP_FN asp_c3 value_of(const asp_mat *mat, asp_real c, asp_real x, asp_real y)
+ASP_FN void value_of(const asp_mat *mat, asp_real c, asp_real x, asp_real y, asp_c3 *out)
 {
     asp_real F[3];
-    asp_c3 out;
     fresnel_of(mat, c, F);
-    mat->model->ASPI_MODEL_CALL(value)(mat, x, y, F);
-    out.r = F[0];
-    out.g = F[1];
-    out.b = F[2];
-    return out;
+    mat->model->ASPI_MODEL_CALL(value)(mat, F[0], F[1], F[2], x, y, out);
 }
 
 /* ---- single calls */
@@ -188,7 +173,9 @@ ASP_FN asp_c3 eval_scaled(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real by)
     asp_real x = facet_part(k, wi, wo, m.z, c, sigma_of(k, wi),
                             sigma_of(k, wo), R(0.25) * D, mat->mask);
     asp_real y = aspi_min(wi.z, wo.z) <= R(0.0) ? R(0.0) : by;
-    return value_of(mat, c, x * y, y);
+    asp_c3 out;
+    value_of(mat, c, x * y, y, &out);
+    return out;
 }
 
 asp_c3 ASPI_CALL(asp_eval)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
@@ -210,49 +197,50 @@ asp_real ASPI_CALL(asp_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 }
 
 /* Visible normals only: D cancels in the weight, which is F J sigma_i cos_o. */
-ASP_FN asp_sampled sample_pure(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
+ASP_FN void sample_pure(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_sampled *out)
 {
     const asp_shape *k = &mat->ndf;
-    asp_v3 v = aspi_view(k, wi);
-    asp_real sigma_i = ASPI_OPS(k).sigma(k, v.z, aspi_length2(v));
-    asp_v3 m = aspi_visible(k, v, u1, u2);
-    asp_real c = aspi_dot(wi, m), x;
-    asp_sampled out;
-    out.wo = reflect(wi, m);
-    out.pdf = lobe_density(wi.z, density_of(k, m), sigma_i);
-    x = out.wo.z * facet_part(k, wi, out.wo, m.z, c, sigma_i, sigma_of(k, out.wo), sigma_i,
-                              mat->mask);
-    out.weight = value_of(mat, c, x, x);
-    return out;
+    asp_mirrored s;
+    asp_real x;
+    ASPI_OPS(k).reflect(k, wi.x, wi.y, wi.z, u1, u2, &s);
+    out->wo.x = s.wo_x;
+    out->wo.y = s.wo_y;
+    out->wo.z = s.wo_z;
+    out->pdf = lobe_density(wi.z, s.density, s.sigma_i);
+    x = s.wo_z * facet_part(k, wi, out->wo, s.m_z, s.cosine, s.sigma_i, s.sigma_o, s.sigma_i,
+                            mat->mask);
+    value_of(mat, s.cosine, x, x, &out->weight);
 }
 
 /* Facets or base by u1, which is stretched again; the density is that of the mixture. */
-static asp_sampled sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
+static void sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_sampled *out)
 {
     const asp_shape *k = &mat->ndf;
-    asp_v3 v = aspi_view(k, wi), m;
-    asp_real sigma_i = ASPI_OPS(k).sigma(k, v.z, aspi_length2(v));
-    asp_real share = share_of(mat, wi.z), c, D, x, y, scale;
-    asp_sampled out;
+    asp_real sigma_i = sigma_of(k, wi), share = share_of(mat, wi.z), c, D, x, y, scale;
+    asp_v3 m;
     int facet = u1 < share;
     u1 = facet ? u1 / share : (u1 - share) / (R(1.0) - share);
-    m = aspi_visible(k, v, u1, u2);
-    out.wo = facet ? reflect(wi, m) : cosine_lobe(u1, u2);
-    m = half_vector(wi, out.wo);
+    m = ASPI_CALL(asp_sample_visible)(k, wi, u1, u2);
+    out->wo = facet ? aspi_reflect(wi, m) : cosine_lobe(u1, u2);
+    m = half_vector(wi, out->wo);
     c = aspi_dot(wi, m);
     D = density_of(k, m);
-    out.pdf = mixed_density(wi.z, out.wo.z, lobe_density(wi.z, D, sigma_i), share);
-    y = aspi_min(wi.z, out.wo.z) <= R(0.0) || out.pdf <= R(0.0) ? R(0.0) : out.wo.z / out.pdf;
-    scale = out.pdf <= R(0.0) ? R(0.0) : R(0.25) * D / out.pdf;
-    x = out.wo.z * facet_part(k, wi, out.wo, m.z, c, sigma_i, sigma_of(k, out.wo), scale,
+    out->pdf = mixed_density(wi.z, out->wo.z, lobe_density(wi.z, D, sigma_i), share);
+    y = aspi_min(wi.z, out->wo.z) <= R(0.0) || out->pdf <= R(0.0) ? R(0.0) : out->wo.z / out->pdf;
+    scale = out->pdf <= R(0.0) ? R(0.0) : R(0.25) * D / out->pdf;
+    x = out->wo.z * facet_part(k, wi, out->wo, m.z, c, sigma_i, sigma_of(k, out->wo), scale,
                               mat->mask);
-    out.weight = value_of(mat, c, x, y);
-    return out;
+    value_of(mat, c, x, y, &out->weight);
 }
 
 asp_sampled ASPI_CALL(asp_sample)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
 {
-    return mat->model->mixed ? sample_mixed(mat, wi, u1, u2) : sample_pure(mat, wi, u1, u2);
+    asp_sampled out;
+    if (mat->model->mixed)
+        sample_mixed(mat, wi, u1, u2, &out);
+    else
+        sample_pure(mat, wi, u1, u2, &out);
+    return out;
 }
 
 /* ---- loops */
@@ -289,7 +277,7 @@ ASP_CLONES static void loop_reflect(size_t n, IN ix, IN iy, IN iz, IN mx, IN my,
         m.x = mx[i];
         m.y = my[i];
         m.z = mz[i];
-        wo = reflect(wi, m);
+        wo = aspi_reflect(wi, m);
         ox[i] = wo.x;
         oy[i] = wo.y;
         oz[i] = wo.z;

@@ -1,10 +1,11 @@
 /* facet.h - directions, normals and masking through the slope map, in both precisions
  *
- * The standard surface sees everything through p = M q + t (see asperity.h section 3). Read after
- * asperity/elementary.h and core/blocks.h. */
+ * The standard surface sees everything through p = M q + t (see asperity.h section 3). */
 
-#ifndef ASPI_FACET_NAMES
-#define ASPI_FACET_NAMES
+#include "asperity/elementary.h"
+
+#ifndef ASP_FACET_NAMES
+#define ASP_FACET_NAMES
 #define aspi_view ASP_NAME(aspi_view)
 #define aspi_facet ASP_NAME(aspi_facet)
 #define aspi_facet_back ASP_NAME(aspi_facet_back)
@@ -13,34 +14,43 @@
 #define aspi_normalize ASP_NAME(aspi_normalize)
 #define aspi_density_arguments ASP_NAME(aspi_density_arguments)
 #define aspi_density_result ASP_NAME(aspi_density_result)
-#define aspi_visible ASP_NAME(aspi_visible)
-#define aspi_normal ASP_NAME(aspi_normal)
+#define aspi_reflect ASP_NAME(aspi_reflect)
 #define aspi_masked ASP_NAME(aspi_masked)
 #define aspi_hidden ASP_NAME(aspi_hidden)
 #define aspi_joint ASP_NAME(aspi_joint)
 #define aspi_finite ASP_NAME(aspi_finite)
 
 /* Facets closer to the vertical than this have density 0; z^4 must not underflow. */
-#define ASPI_FLAT (ASP_PRECISION == 64 ? R(1e-70) : R(1e-9))
+#define ASP_FLAT (ASP_PRECISION == 64 ? R(1e-70) : R(1e-9))
 /* What a density is cut at instead of overflowing, and what a denominator is kept above: at most
  * 1e10 of D, 1e20 of 1/sigma and 1e5 of the rest are ever multiplied. */
-#define ASPI_LARGEST (ASP_PRECISION == 64 ? R(1e300) : R(3e38))
-#define ASPI_SMALLEST (ASP_PRECISION == 64 ? R(1e-150) : R(1e-19))
+#define ASP_LARGEST (ASP_PRECISION == 64 ? R(1e300) : R(3e38))
+#define ASP_SMALLEST (ASP_PRECISION == 64 ? R(1e-150) : R(1e-19))
 #endif
 
-#if (ASP_PRECISION == 64 && !defined(ASPI_FACET_64)) || \
-    (ASP_PRECISION == 32 && !defined(ASPI_FACET_32))
+#if (ASP_PRECISION == 64 && !defined(ASP_FACET_64)) || \
+    (ASP_PRECISION == 32 && !defined(ASP_FACET_32))
 #if ASP_PRECISION == 64
-#define ASPI_FACET_64
+#define ASP_FACET_64
 #else
-#define ASPI_FACET_32
+#define ASP_FACET_32
 #endif
 
 ASP_FN asp_real aspi_dot(asp_v3 a, asp_v3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 ASP_FN asp_real aspi_length2(asp_v3 a) { return a.x * a.x + a.y * a.y; }
 
-ASP_FN asp_real aspi_finite(asp_real x) { return x > ASPI_LARGEST ? ASPI_LARGEST : x; }
+ASP_FN asp_real aspi_finite(asp_real x) { return x > ASP_LARGEST ? ASP_LARGEST : x; }
+
+/* The mirror image of wi in a facet. */
+ASP_FN asp_v3 aspi_reflect(asp_v3 wi, asp_v3 m)
+{
+    asp_real d = R(2.0) * aspi_dot(wi, m);
+    m.x = d * m.x - wi.x;
+    m.y = d * m.y - wi.y;
+    m.z = d * m.z - wi.z;
+    return m;
+}
 
 /* Unit vector of a; the zero vector gives the normal of the flat surface. */
 ASP_FN asp_v3 aspi_normalize(asp_v3 a)
@@ -85,29 +95,6 @@ ASP_FN asp_v3 aspi_facet_back(const asp_shape *k, asp_v3 m)
     return v;
 }
 
-/* The distribution's single samplers, mapped back. Needs core/blocks.h. */
-ASP_FN asp_v3 aspi_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
-{
-    asp_real m[3];
-    asp_v3 out;
-    ASPI_OPS(k).visible(k, v.x, v.y, v.z, u1, u2, m);
-    out.x = m[0];
-    out.y = m[1];
-    out.z = m[2];
-    return aspi_normalize(aspi_facet_back(k, out));
-}
-
-ASP_FN asp_v3 aspi_normal(const asp_shape *k, asp_real u1, asp_real u2)
-{
-    asp_real m[3];
-    asp_v3 out;
-    ASPI_OPS(k).normal(k, u1, u2, m);
-    out.x = m[0];
-    out.y = m[1];
-    out.z = m[2];
-    return aspi_normalize(aspi_facet_back(k, out));
-}
-
 /* What the distribution's density takes for D(m): z2 is 1 where the facet is vertical or turned down,
  * and aspi_density_result makes that 0. */
 ASP_FN asp_v2 aspi_density_arguments(const asp_shape *k, asp_v3 m)
@@ -115,7 +102,7 @@ ASP_FN asp_v2 aspi_density_arguments(const asp_shape *k, asp_v3 m)
     asp_v3 v = aspi_facet(k, m);
     asp_v2 a;
     a.x = aspi_length2(v);
-    a.y = v.z <= ASPI_FLAT ? R(1.0) : v.z * v.z;
+    a.y = v.z <= ASP_FLAT ? R(1.0) : v.z * v.z;
     return a;
 }
 
@@ -123,7 +110,7 @@ ASP_FN asp_v2 aspi_density_arguments(const asp_shape *k, asp_v3 m)
 ASP_FN asp_real aspi_density_result(const asp_shape *k, asp_real standard, asp_real mz)
 {
     asp_real d = aspi_finite(standard * k->inv_det);
-    return mz <= ASPI_FLAT ? R(0.0) : d;
+    return mz <= ASP_FLAT ? R(0.0) : d;
 }
 
 /* The projected area that masking divides by, w.z / G1: never less than w.z. `min`: Walter et al.
@@ -167,6 +154,6 @@ ASP_FN asp_real aspi_joint(asp_real ci, asp_real co, asp_real si, asp_real so, a
     asp_real smith = (mask & 15) == ASP_MASK_UNCORRELATED ? uncorrelated : correlated;
     asp_real over = cavity ? (closed ? groove : both) : smith;
     asp_real top = cavity && closed ? open : R(1.0);
-    return top / (over < ASPI_SMALLEST ? ASPI_SMALLEST : over);
+    return top / (over < ASP_SMALLEST ? ASP_SMALLEST : over);
 }
 #endif
