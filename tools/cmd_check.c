@@ -104,14 +104,14 @@ static void print_group(const group *g)
     printf("%s", g->title);
     if (g->spec_count > 1)
         printf(" (%zu sets of parameters)", g->spec_count);
-    printf("\n  %-14s %10s %11s %11s  %-14s\n", "law", "checks", "worst", "allowed", "unit");
+    printf("\n  %-16s %8s %10s %10s         unit\n", "law", "checks", "worst", "allowed");
     for (size_t i = 0; i < g->law_count; i++) {
         const tally *t = &g->laws[i];
         const asp_law *law = asp_laws(i);
         if (!t->seen)
             continue;
-        printf("  %-14s %10zu %11.3g %11.3g  %-14s %s\n", law->name, t->checks, t->worst.worst,
-               t->worst.allowed, law->unit, t->failed ? "BROKEN" : "holds");
+        printf("  %-16s %8zu %10.3g %10.3g  %-6s %s\n", law->name, t->checks, t->worst.worst,
+               t->worst.allowed, t->failed ? "BROKEN" : "holds", law->unit);
         if (t->failed)
             printf("      %s\n      %s: %s\n", law->says, t->spec, t->worst.where);
     }
