@@ -5,7 +5,7 @@
 
 set(ASPERITY_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
 
-# Shared libraries show the public names only.
+# Shared libraries show the public names, and apart from them those that the command needs.
 if(BUILD_SHARED_LIBS AND UNIX AND NOT APPLE)
   foreach(library asperity asperity_data asperity_draw)
     if(TARGET ${library})
@@ -65,6 +65,11 @@ if(TARGET asperity_data)
     "asperity-data" "libpng OpenEXR" "-pthread -lm")
 endif()
 
+if(BUILD_SHARED_LIBS)
+  set(ASPERITY_STATIC FALSE)
+else()
+  set(ASPERITY_STATIC TRUE)
+endif()
 configure_package_config_file(cmake/asperityConfig.cmake.in
   ${CMAKE_BINARY_DIR}/asperityConfig.cmake INSTALL_DESTINATION ${ASPERITY_PACKAGE_DIR})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/asperityConfigVersion.cmake

@@ -7,8 +7,8 @@
 
 #define ASP_NDF two_scale
 static const asp_param two_scale_params[] = {
-    { "share", 0.0, 0, 1.0, 0.3, "share of the rougher facets" },
-    { "ratio", 1.0, 0, 100.0, 4.0, "their roughness over the others'" },
+    { "share", 0.0, 0, 1.0, 0.25, "share of the rougher facets" },
+    { "ratio", 1.0, 0, 16.0, 4.0, "their roughness over the others'" },
 };
 
 #define ASP_PRECISION 64
@@ -30,6 +30,8 @@ ASP_RECORD asp_model asp_model_two_scale = {
 /* names of our own carry the distribution's name and the precision */
 #define ggx_area ASP_NDF_NAME(_area)
 #define ggx_normal ASP_NDF_NAME(_facet)
+#define scale ASP_NDF_NAME(_scale)
+#define choose ASP_NDF_NAME(_choose)
 
 /* GGX of roughness a: half of |stretched w| + w, rewritten where that would cancel. */
 ASP_FN asp_real ggx_area(asp_real a, asp_real w, asp_real s2)
@@ -66,34 +68,44 @@ ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
     return (R(1.0) - share) * ggx_area(R(1.0), w, s2) + share * ggx_area(k->shape[1], w, s2);
 }
 
-/* The scale is chosen with u1 by what each shows to v; what is left of u1, stretched to [0, 1), is
- * uniform and goes to the spherical cap (Dupuy, Benyoub 2023). */
+/* Which scale, and what is left of u1 for it: u and 1 - u. The fine one takes u1 in [0, p) upwards, the
+ * rough one [p, 1) downwards, so that they meet at u = 1. There every GGX sampler reaches the horizon,
+ * at an azimuth that does not depend on the roughness: the sampler stays continuous. */
+typedef struct scale { asp_real a, u, v; } scale;
+
+ASP_FN scale choose(const asp_shape *k, asp_real p, asp_real u1)
+{
+    asp_real low = aspi_max(p, R(1e-30)), high = aspi_max(R(1.0) - p, R(1e-30));
+    asp_real below = (p - u1) / low, above = (u1 - p) / high;
+    scale out;
+    out.a = u1 < p ? R(1.0) : k->shape[1];
+    out.u = u1 < p ? u1 / low : (R(1.0) - u1) / high;
+    out.v = u1 < p ? below : above;
+    return out;
+}
+
+/* By what each shows to v; then the spherical cap (Dupuy, Benyoub 2023). */
 ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
 {
     asp_real share = k->shape[0], s2 = v.x * v.x + v.y * v.y;
     asp_real fine = (R(1.0) - share) * ggx_area(R(1.0), v.z, s2);
     asp_real rough = share * ggx_area(k->shape[1], v.z, s2);
-    asp_real p = fine / (fine + rough);
-    asp_real left = u1 < p ? u1 / p : (u1 - p) / aspi_max(R(1.0) - p, R(1e-30));
-    asp_real a = u1 < p ? R(1.0) : k->shape[1];
-    asp_real t2 = a * a * s2;
-    asp_real scale = R(1.0) / aspi_sqrt(t2 + v.z * v.z);
-    asp_real up = R(1.0) + aspi_abs(v.z) * scale;
-    asp_real cap = v.z < R(0.0) ? t2 * scale * scale / up : up;
-    asp_real u = left < R(1.0) ? left : R(0.99999994);
-    asp_real d = u * cap;
-    asp_real r = aspi_sqrt(d * aspi_max(R(2.0) - d, R(0.0)));
-    return ggx_normal(a, r, u2, a * v.x * scale, a * v.y * scale, (R(1.0) - u) * cap);
+    scale c = choose(k, fine / aspi_max(fine + rough, R(1e-37)), u1);
+    asp_real t2 = c.a * c.a * s2;
+    asp_real inv = R(1.0) / aspi_sqrt(t2 + v.z * v.z);
+    asp_real up = R(1.0) + aspi_abs(v.z) * inv;
+    asp_real low = t2 * inv * inv / up;                     /* 2 - up */
+    asp_real cap = v.z < R(0.0) ? low : up;
+    asp_real rest = (v.z < R(0.0) ? up : low) + c.v * cap;  /* 2 - u cap */
+    return ggx_normal(c.a, aspi_sqrt(c.u * cap * rest), u2, c.a * v.x * inv, c.a * v.y * inv,
+                      c.v * cap);
 }
 
 /* tan^2 = a^2 u / (1 - u) */
 ASP_FN asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
 {
-    asp_real p = R(1.0) - k->shape[0];
-    asp_real left = u1 < p ? u1 / p : (u1 - p) / aspi_max(R(1.0) - p, R(1e-30));
-    asp_real a = u1 < p ? R(1.0) : k->shape[1];
-    asp_real u = left < R(1.0) ? left : R(0.99999994);
-    return ggx_normal(a, aspi_sqrt(u), u2, R(0.0), R(0.0), aspi_sqrt(R(1.0) - u));
+    scale c = choose(k, R(1.0) - k->shape[0], u1);
+    return ggx_normal(c.a, aspi_sqrt(c.u), u2, R(0.0), R(0.0), aspi_sqrt(c.v));
 }
 
 #include "asperity/ndf_loops.h"
