@@ -223,6 +223,30 @@ def full_device():
     check(process.wait(20) in (-signal.SIGPIPE, 1), "a closed pipe")
 
 
+# ---------------------------------------------------------------- fabricate
+
+def fabrications():
+    words = ["fabricate", "--rays", "50000", "--size", "128", "--alpha", "0.3"]
+    made = json.loads(run(*words, "--json", "a.binary", status=0).stdout)
+    check(made["rays"] == 50000 and made["metal"] == "Au", "report: %s" % made)
+    check(near(made["slopes"]["alpha"], 0.3, 0.2) and made["slopes"]["facets"] == 2 * 128 ** 2,
+          "slopes: %s" % made["slopes"])
+    check(made["albedo"][0] > made["albedo"][1] > made["albedo"][2] > 0, "gold is yellow")
+    run(*words, "--threads", "3", "b.binary", status=0)
+    check(contents("a.binary") == contents("b.binary"), "depends on the threads")
+    flat = json.loads(run(*words, "--gamma", "inf", "--metal", "none", "--json", "c.binary",
+                          status=0).stdout)
+    check(all(abs(a - 1) < 1e-3 for a in flat["albedo"]), "nothing is absorbed: %s" % flat["albedo"])
+    kept = sorted(os.listdir("."))
+    run("fabricate", "x.binary", "--metal", "AU", status=2, says=["'AU'", "'Au'"])
+    run("fabricate", "x.binary", "--gamma", "1.5", status=2, says=["1.5", "[1.6, inf]"])
+    run("fabricate", "x.binary", "--size", "300", status=2, says=["--size", "power of two"])
+    run("fabricate", "x.binary", "--size", "64", "--correlation", "30", status=2,
+        says=["correlation", "[2, 8]"])
+    run("fabricate", "x.png", status=2, says=["x.png", ".binary"])
+    check(sorted(os.listdir(".")) == kept, "a refused command wrote a file")
+
+
 # ---------------------------------------------------------------- check
 
 def checks():
@@ -242,4 +266,4 @@ def checks():
 
 
 run_sections([plots, plot_numbers, conversions, broken_measurements, renders, progress_bar, signals,
-              full_device, checks])
+              full_device, fabrications, checks])

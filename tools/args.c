@@ -29,8 +29,7 @@ void frame_range(const cmd_option *option, char *text, size_t size)
                (option->low != 0 || option->high != 0)) {
         put_number(low, sizeof low, option->low);
         put_number(high, sizeof high, option->high);
-        snprintf(text, size, "%s%s, %s%s", option->low_open ? "(" : "[", low, high,
-                 isinf(option->high) ? ")" : "]");
+        snprintf(text, size, "%s%s, %s]", option->low_open ? "(" : "[", low, high);
     }
 }
 
@@ -72,7 +71,10 @@ int frame_check(const cmd_option *option, const char *text, double *number, char
     case CMD_INTEGER:
         break;
     }
-    if (!aspi_parse_number(text, strlen(text), number)) {
+    int endless = option->kind == CMD_NUMBER && isinf(option->high) && strcmp(text, "inf") == 0;
+    if (endless)
+        *number = option->high;
+    if (!endless && !aspi_parse_number(text, strlen(text), number)) {
         snprintf(why, size, "'%s' is not a number%s%s", text, range[0] ? "; allowed is " : "",
                  range);
         return 1;

@@ -44,7 +44,7 @@ enum { CMD_OK = 0, CMD_FAILED = 1, CMD_USAGE = 2 };
 typedef enum cmd_kind {
     CMD_FLAG,       /* takes no value */
     CMD_TEXT,
-    CMD_NUMBER,     /* in [low, high]; both 0: any finite number */
+    CMD_NUMBER,     /* in [low, high]; both 0: any finite number; high INFINITY: also `inf` */
     CMD_INTEGER,    /* in [low, high] */
     CMD_CHOICE      /* one of the words in `argument`, which stand between bars: "f64|f32" */
 } cmd_kind;

@@ -1,37 +1,5 @@
 /* cmd_convert.c - measurement files from one format into another, models as measurements */
-#include "cmd.h"
-
-#include <string.h>
-
-/* A writer; the format is chosen by --to or by the ending of the name. */
-typedef struct format {
-    const char *name;
-    const char *endings[3];
-    asp_status (*write)(const asp_measured *, const char *, asp_error *);
-} format;
-
-static const format formats[] = {
-    { "merl", { ".binary", ".merl", NULL }, asp_measured_write_merl },
-    { "csv",  { ".csv", NULL, NULL },       asp_measured_write_csv },
-};
-enum { FORMATS = sizeof formats / sizeof *formats };
-
-static int ends_in(const char *path, const char *ending)
-{
-    size_t n = strlen(path), m = strlen(ending);
-    return n > m && strcmp(path + n - m, ending) == 0;
-}
-
-static const format *choose(const cmd_args *args, const char *path)
-{
-    if (cmd_given(args, "to"))
-        return &formats[cmd_choice(args, "to")];
-    for (int i = 0; i < FORMATS; i++)
-        for (int j = 0; formats[i].endings[j]; j++)
-            if (ends_in(path, formats[i].endings[j]))
-                return &formats[i];
-    return NULL;
-}
+#include "writers.h"
 
 static asp_rgb evaluate(const void *material, asp_vec3 wi, asp_vec3 wo)
 {
@@ -60,7 +28,6 @@ static asp_measured *source(const cmd_args *args, int modelled, int *status)
 
 static int run(const cmd_args *args)
 {
-    asp_error err;
     int modelled = cmd_given(args, "material") || cmd_given(args, "ndf"), status = CMD_OK;
     size_t files = cmd_operand_count(args);
     if (modelled && files != 1)
@@ -69,23 +36,17 @@ static int run(const cmd_args *args)
     if (!modelled && files != 2)
         return cmd_usage("needed are IN and OUT, or --material SPEC and OUT");
     const char *path = cmd_operand(args, files - 1);
-    const format *to = choose(args, path);
-    if (!to)
-        return cmd_usage("%s: the name must end in .binary, .merl or .csv, or give --to", path);
-    status = cmd_out_check(path);
+    const writer *to;
+    status = writer_choose(args, path, &to);
     asp_measured *data = status == CMD_OK ? source(args, modelled, &status) : NULL;
-    if (!data)
-        return status;
-    cmd_hold();
-    if (to->write(data, path, &err) != ASP_OK)
-        status = cmd_error(&err);
-    cmd_release();
+    if (data)
+        status = writer_write(to, data, path);
     asp_measured_free(data);
     return status;
 }
 
 static const cmd_option options[] = {
-    { "to", 0, "merl|csv", CMD_CHOICE, .help = "the format; default: by the ending of OUT" },
+    { "to", 0, WRITER_NAMES, CMD_CHOICE, .help = "the format; default: by the ending of OUT" },
     { "material", 0, "SPEC", CMD_TEXT, .help = "write a material as a measurement" },
     { "ndf", 0, "SPEC", CMD_TEXT, .help = "or a distribution's perfect mirror facets" },
     { "mask", 0, "NAME", CMD_TEXT, .help = "masking, as in `asperity list`" },
