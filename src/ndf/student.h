@@ -28,22 +28,27 @@ enum {
     STUDENT_T0 = 10,
     STUDENT_SCALE = 11,          /* d scale + offset runs over [-1, 1] */
     STUDENT_OFFSET = 12,
-    /* the conditional distribution across the view: the same family at n + 1/2 */
-    STUDENT_Y_T0 = 13,
-    STUDENT_Y_SCALE = 14,
-    STUDENT_Y_OFFSET = 15,
-    STUDENT_Y_N = 16,
-    STUDENT_Y_INVN = 17,
-    STUDENT_Y_WIDTH = 18,        /* sqrt(n/(n + 1/2)) */
-    STUDENT_P32 = 32,            /* 14 coefficients of P for float32 ... */
-    STUDENT_B32 = 46,            /* ... 12 of B */
-    STUDENT_P64 = 64,            /* 24 of P for float64 ... */
-    STUDENT_B64 = 88,            /* ... 24 of B */
-    STUDENT_Y32 = 112,           /* B of n + 1/2: 12 ... */
-    STUDENT_Y64 = 124            /* ... 24 */
+    STUDENT_BETA = 13,           /* 1 - 1/(2n) */
+    /* the conditional distribution across the view: the same family at m = n + 1/2 */
+    STUDENT_Y_N = 14,            /* m, 1/m */
+    STUDENT_Y_WIDTH = 16,        /* sqrt(n/m) */
+    STUDENT_P32 = 32,            /* 14 coefficients of P for float32, */
+    STUDENT_B32 = 46,            /* 12 of B, */
+    STUDENT_Y32 = 58,            /* 12 of the quantile's R; */
+    STUDENT_P64 = 72,            /* 24 of P for float64, */
+    STUDENT_B64 = 96,            /* 24 of B, */
+    STUDENT_Y64 = 120            /* 26 of R */
 };
 
 #define STUDENT_A 2.0
+
+/* Quantile of the marginal of m = n + 1/2: with l = -log(4 u (1 - u)) and q = m log(1 + y^2/m),
+ * q = l R(l/(l + STUDENT_Y_K))^2. Uniform numbers nearer to 0 or 1 than these count as these. */
+#define STUDENT_Y_K 9.0
+#define STUDENT_LEAST_32 0x1p-40
+#define STUDENT_LEAST_64 0x1p-70
+#define STUDENT_Y_END_32 0.7454   /* l/(l + k) there, rounded up: 0.74533 */
+#define STUDENT_Y_END_64 0.8397   /* 0.83967 */
 
 /* Fills out->table for n > 1/2, infinity included. */
 void aspi_student_prepare(asp_ndf *out, double n);

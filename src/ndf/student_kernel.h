@@ -10,7 +10,8 @@
 #define student_p ASP_NDF_NAME(_p)
 #define student_b ASP_NDF_NAME(_b)
 #define student_point ASP_NDF_NAME(_point)
-#define student_side ASP_NDF_NAME(_side)
+#define student_across ASP_NDF_NAME(_across)
+#define student_step ASP_NDF_NAME(_step)
 /* Polynomial of an even number of coefficients c[first ...]: even and odd powers apart, which halves
  * the chain of dependent operations. Between START and END go the steps, highest first. */
 #define STUDENT_START(t, c, last) \
@@ -110,20 +111,19 @@ ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
     return aspi_max(w, R(0.0)) + (s2 > R(0.0) ? tail : R(0.0));
 }
 
-/* B at d from the coefficients at `first`, which lie 12 apart of float64's. */
-ASP_FN asp_real student_b(const asp_shape *k, int first32, int first64, asp_real t)
+/* B at d, relative error 5e-8 and 1e-13 beside rounding. */
+ASP_FN asp_real student_b(const asp_shape *k, asp_real d)
 {
+    asp_real t = d * k->table[STUDENT_SCALE] + k->table[STUDENT_OFFSET];
 #if ASP_PRECISION == 64
-    const asp_real *c = k->table + first64;
+    const asp_real *c = k->table + STUDENT_B64;
     STUDENT_START(t, c, 23)
-    (void)first32;
     STUDENT_STEP(c, 20)
     STUDENT_STEP5(c, 10)
     STUDENT_STEP5(c, 0)
 #else
-    const asp_real *c = k->table + first32;
+    const asp_real *c = k->table + STUDENT_B32;
     STUDENT_START(t, c, 11)
-    (void)first64;
     STUDENT_STEP5(c, 0)
 #endif
     return odd * t + even;
@@ -147,70 +147,162 @@ ASP_FN asp_v2 student_point(asp_real q, asp_real n, asp_real invn)
     return out;
 }
 
-ASP_FN asp_real student_side(const asp_shape *k, asp_real q, asp_v2 p)
+/* The slope across the view, given the slope x along it, is sqrt(n + x^2) times a t-quantile of u:
+ * returned as the homogeneous point of student_point, .x of either sign (to be multiplied by
+ * sqrt n/sqrt(n + 1/2)). u = 1/2 gives 0. */
+ASP_FN asp_v2 student_across(const asp_shape *k, asp_real u)
 {
-    asp_real d = R(STUDENT_A) / (R(STUDENT_A) + p.x);
-    asp_real t = d * k->table[STUDENT_SCALE] + k->table[STUDENT_OFFSET];
-    return k->table[STUDENT_T0] * aspi_exp(-q) * d * student_b(k, STUDENT_B32, STUDENT_B64, t);
+#if ASP_PRECISION == 64
+    const asp_real least = R(STUDENT_LEAST_64), scale = R(2.0 / STUDENT_Y_END_64);
+    const asp_real *c = k->table + STUDENT_Y64;
+#else
+    const asp_real least = R(STUDENT_LEAST_32), scale = R(2.0 / STUDENT_Y_END_32);
+    const asp_real *c = k->table + STUDENT_Y32;
+#endif
+    asp_real v = aspi_max(aspi_min(u, R(1.0) - u), least);
+    asp_real h = R(1.0) - (v + v);
+    asp_real l = -aspi_log_near(R(4.0) * v * (R(1.0) - v), -h * h);
+    asp_real t = scale * l / (l + R(STUDENT_Y_K)) - R(1.0);
+    asp_v2 p;
+#if ASP_PRECISION == 64
+    STUDENT_START(t, c, 25)
+    STUDENT_STEP(c, 22)
+    STUDENT_STEP(c, 20)
+    STUDENT_STEP5(c, 10)
+#else
+    STUDENT_START(t, c, 11)
+#endif
+    STUDENT_STEP5(c, 0)
+    even = odd * t + even;
+    p = student_point(l * (even * even), k->table[STUDENT_Y_N], k->table[STUDENT_Y_N + 1]);
+    p.x = u > R(0.5) ? -p.x : p.x;
+    return p;
 }
 
-/* A visible normal by inversion. */
+/* One step of Halley's method for the slope along the view. The unknown is r = sqrt q, q = n log(1 +
+ * x^2/n), in which the equation's two terms are nearly Gaussian. y(r) = t is solved for
+ *     y = turn (c T + side s M) + shift
+ * in the form sqrt y = sqrt t, or log y = log t where by_log > 0. */
+ASP_FN asp_real student_step(const asp_shape *k, asp_real r_now, asp_real c, asp_real s,
+                             asp_real side, asp_real turn, asp_real shift, asp_real t, asp_real by_log)
+{
+    asp_real r = aspi_max(r_now, ASP_PRECISION == 64 ? R(1e-12) : R(1e-6));
+    asp_real q = r * r;
+    asp_v2 p = student_point(q, k->table[STUDENT_N], k->table[STUDENT_INVN]);
+    asp_real d = R(STUDENT_A) / (R(STUDENT_A) + p.x);
+#if STUDENT_GAUSSIAN
+    asp_real e = aspi_exp(-q);
+    asp_real ratio = R(1.0), bend = R(-2.0) * r;
+#else
+    asp_real e = aspi_exp(-q * k->table[STUDENT_BETA]);          /* g^(1 - 2n) */
+    asp_real ratio = r / p.x, z = ratio * p.y;
+    asp_real bend = (R(1.0) - z * z) / r - (r + r);
+#endif
+    asp_real ew = e * p.y;                                       /* g^(-2n) */
+    asp_real ss = side * s;
+    asp_real slope = aspi_max(c * p.y + ss * p.x, ASP_PRECISION == 64 ? R(1e-40) : R(1e-12));
+    asp_real value = c * (k->table[STUDENT_T0] * ew * d * student_b(k, d))
+                   + ss * (k->table[STUDENT_M0] * e);
+    asp_real y = aspi_max(turn * value + shift, R(1e-6) * t);
+    /* y'/y, and y''/y' less the part that the logarithm or the root straightens */
+    asp_real y1 = R(-2.0) * turn * k->table[STUDENT_T0] * ratio * (e * slope) / y;
+    asp_real y2 = bend + ss * ratio / slope - (by_log > R(0.0) ? y1 : R(0.5) * y1);
+    asp_real x = t / y;
+    asp_real g = by_log > R(0.0) ? -aspi_log(x) : R(2.0) * (R(1.0) - aspi_sqrt(x));
+    asp_real a = g / y1;
+    return r - a / aspi_min(aspi_max(R(1.0) - R(0.5) * a * y2, R(0.4)), R(3.0));
+}
+/* A visible normal by inversion of the exact conditional distributions: first the slope x along the
+ * view, whose distribution function is (c F(x) + s M(x))/sigma with F = 1 - T, then the slope across,
+ * a t-quantile. (c, s): height and length of the view. Three cases, all solved for r >= 0:
+ *     left    x = -X <= 0       c T(X) + s M(X) = u1 sigma
+ *     right   0 <= x <= c/s     c T(X) - s M(X) + far = (1 - u1) sigma, double zero at X = c/s
+ *     below   c < 0, x = -X     c T(X) + s M(X) = u1 far, double zero of far minus it at X = -c/s
+ * where far is the projected area of the side turned away. The start solves a quadratic in r, b r +
+ * q2 r^2 = log of the left side's ratio to its value at 0. */
 ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
 {
-    asp_real s2 = v.x * v.x + v.y * v.y;
-    asp_real scale = R(1.0) / aspi_sqrt(s2 + v.z * v.z);
-    asp_real s = aspi_sqrt(s2), c = v.z * scale, sn = s * scale;
-    asp_real far = ndf_sigma(k, -aspi_abs(c), sn * sn);
-    asp_real sigma = aspi_max(c, R(0.0)) + far;
-    asp_real n = STUDENT_GAUSSIAN ? R(1.0) : k->table[STUDENT_N];
-    asp_real invn = k->table[STUDENT_INVN];
-    asp_real beta = R(1.0) - R(0.5) * invn;
-    asp_real m0 = k->table[STUDENT_M0];
-    asp_real start = R(0.5) * c + sn * m0;
-    asp_real uu = aspi_max(u1, ASP_PRECISION == 64 ? R(1e-30) : R(1e-12));
-    asp_real left = uu * sigma;
-    asp_real right = (R(1.0) - uu) * sigma;
-    int is_left = (left <= start) | (c < R(0.0));
-    asp_real eps = is_left ? R(1.0) : R(-1.0);
-    asp_real t0 = is_left ? -left : far - right;
-    asp_real lo = R(0.0), hi = R(10.0), hy = hi;
-    asp_v2 p, y, t;
+    const asp_real tiny = ASP_PRECISION == 64 ? R(1e-200) : R(1e-30);
+    const asp_real least = ASP_PRECISION == 64 ? R(STUDENT_LEAST_64) : R(STUDENT_LEAST_32);
+    asp_real vs2 = v.x * v.x + v.y * v.y;
+    asp_real vs = aspi_sqrt(vs2);
+    asp_real scale = R(1.0) / aspi_sqrt(vs2 + v.z * v.z);
+    asp_real c = v.z * scale, s = vs * scale, s2 = s * s, c2 = c * c;
+    asp_real m0 = k->table[STUDENT_M0], t0 = k->table[STUDENT_T0];
+    asp_real invn = k->table[STUDENT_INVN], beta = k->table[STUDENT_BETA];
+    /* q where the view itself lies, and the far side's area */
+    asp_real steep = c2 / aspi_max(s2, ASP_PRECISION == 64 ? R(1e-290) : R(1e-24));
+#if STUDENT_GAUSSIAN
+    asp_real q_view = steep, g = s;
+#else
+    asp_real q_view = k->table[STUDENT_N] * aspi_log1p(steep * invn);
+    asp_real g = aspi_sqrt(s2 + c2 * invn);
+#endif
+    asp_real ag = R(STUDENT_A) * g, d = ag / (aspi_abs(c) + ag);
+    asp_real far = g * m0 * aspi_exp(-q_view) * (d * d) * student_p(k, d);
+    asp_real r_view = aspi_sqrt(q_view);
+    /* the case */
+    asp_real up = aspi_max(c, R(0.0)), sigma = up + far, sm = s * m0;
+    asp_real u = aspi_max(u1, least), rest = aspi_max(R(1.0) - u, least);
+    asp_real area = u * sigma;
+    asp_real at_left = R(0.5) * up + sm, at_right = aspi_max(sigma - at_left, tiny);
+    /* cases as numbers, positive where they hold: the compilers vectorise selections on one
+     * comparison, not on its logic */
+    asp_real below = -c;
+    asp_real right = c < R(0.0) ? R(-1.0) : area - at_left;
+    asp_real near = c < R(0.0) ? u - R(0.5) : R(-1.0);
+    asp_real folded = aspi_max(right, near);
+    asp_real side = right > R(0.0) ? R(-1.0) : R(1.0), turn = near > R(0.0) ? R(-1.0) : R(1.0);
+    asp_real shift = folded > R(0.0) ? far : R(0.0);
+    asp_real target = folded > R(0.0) ? rest * sigma : area;
+    /* the start */
+    asp_real at_0 = right > R(0.0) ? at_right : at_left;
+    asp_real full = below > R(0.0) ? R(1.0) / u : at_0 / target;
+    asp_real l = aspi_max(aspi_log(full), R(0.0)), root = aspi_sqrt(l);
+    asp_real b = R(2.0) * t0 * up / at_0;
+    asp_real part = R(0.5) * up / at_left;
+    asp_real damp = R(1.0) + R(0.2) * root + (right > R(0.0) ? R(0.0) : l * invn);
+    asp_real b1 = b / damp;
+    asp_real b2 = right > R(0.0) ? R(1.0) + R(1.0) / aspi_max(q_view, tiny)
+                                 : part + (R(1.0) - part) * beta;
+    asp_real r = (l + l) / (b1 + aspi_sqrt(b1 * b1 + R(4.0) * (b2 * l)) + tiny);
+    /* right: bent towards the end of the range */
+    asp_real z = r / aspi_max(r_view, tiny);
+    asp_real z1 = aspi_min(z * (R(1.0) + z * (R(0.5) + R(0.6) * z)), R(30.0));
+    asp_real z2 = z1 * (R(1.0) + z1 * (R(0.5) + R(1.0 / 6.0) * z1));
+    asp_real r_right = r_view * z2 / (R(1.0) + z2);
+    /* left: not less than the M term's own solution; below: from r_view on */
+    asp_real w = l + aspi_sqrt(l + l);
+    asp_real l2 = aspi_log(below > R(0.0) ? R(1.0) + c2 * w / (R(1.0) + w * R(0.5) * invn / beta)
+                                            : aspi_max(R(1.0) - part, tiny));
+    asp_real q2 = aspi_max((l + l2) / beta, R(0.0)) + (below > R(0.0) ? q_view : R(0.0));
+    asp_real r2 = aspi_sqrt(q2);
+    asp_v2 p, across;
     asp_v3 m;
-    int i;
-    asp_real uy = aspi_max(aspi_min(u2, R(1.0) - u2), ASP_PRECISION == 64 ? R(1e-30) : R(1e-12));
-    asp_real ly = R(0.0), x, e;
-    hi = aspi_sqrt(aspi_max(aspi_log((R(0.5) * aspi_abs(c) + sn * m0) / left) / beta, R(0.0)));
-    hi = is_left ? hi : R(6.0) * aspi_sqrt(beta);
-    for (i = 0; i < (ASP_PRECISION == 64 ? 56 : 28); i++) {
-        asp_real mid = R(0.5) * (lo + hi), q = mid * mid, f;
-        p = student_point(q, n, invn);
-        f = c * student_side(k, q, p) + eps * sn * m0 * aspi_exp(-beta * q) + t0;
-        if (!is_left && p.x * sn > c * p.y)
-            f = R(-1.0);
-        if (p.x * sn < -c * p.y)
-            f = R(1.0);
-        lo = f > R(0.0) ? mid : lo;
-        hi = f > R(0.0) ? hi : mid;
-    }
-    p = student_point(lo * lo, n, invn);
-    for (i = 0; i < (ASP_PRECISION == 64 ? 56 : 28); i++) {
-        asp_real mid = R(0.5) * (ly + hy), q = mid * mid, d, f;
-        y = student_point(q, k->table[STUDENT_Y_N], k->table[STUDENT_Y_INVN]);
-        d = R(STUDENT_A) / (R(STUDENT_A) + y.x);
-        f = k->table[STUDENT_Y_T0] * aspi_exp(-q) * d * student_b(k, STUDENT_Y32, STUDENT_Y64,
-            d * k->table[STUDENT_Y_SCALE] + k->table[STUDENT_Y_OFFSET]) - uy;
-        ly = f > R(0.0) ? mid : ly;
-        hy = f > R(0.0) ? hy : mid;
-    }
-    y = student_point(ly * ly, k->table[STUDENT_Y_N], k->table[STUDENT_Y_INVN]);
-    x = eps * p.x * y.y;
-    e = (u2 > R(0.5) ? R(-1.0) : R(1.0)) * y.x * (STUDENT_GAUSSIAN ? R(1.0) : k->table[STUDENT_Y_WIDTH]);
+    asp_real low = below > R(0.0) ? r_view : R(0.0), high = right > R(0.0) ? r_view : R(1e18);
+    asp_real along, over, ax, ay;
+    r = below > R(0.0) ? r2 : aspi_max(r, r2);
+    r = right > R(0.0) ? r_right : r;
+#define STUDENT_REFINE(by_log) \
+    r = student_step(k, r, c, s, side, turn, shift, target, by_log); \
+    r = aspi_min(aspi_max(r, low), high);
+    STUDENT_REFINE(-folded)
+    STUDENT_REFINE(R(0.0))
+    STUDENT_REFINE(R(0.0))
+#if ASP_PRECISION == 64
+    STUDENT_REFINE(R(0.0))
+#endif
+#undef STUDENT_REFINE
+    p = student_point(r * r, k->table[STUDENT_N], invn);
+    across = student_across(k, u2);
+    along = side * p.x * across.y;
+    over = across.x * k->table[STUDENT_Y_WIDTH];
     /* the view's azimuth; any for a view along the normal */
-    t.x = s > R(0.0) ? v.x / s : R(1.0);
-    t.y = s > R(0.0) ? v.y / s : R(0.0);
-    m.x = x * t.x - e * t.y;
-    m.y = x * t.y + e * t.x;
-    m.z = p.y * y.y;
+    ax = vs > R(0.0) ? v.x / vs : R(1.0);
+    ay = vs > R(0.0) ? v.y / vs : R(0.0);
+    m.x = along * ax - over * ay;
+    m.y = along * ay + over * ax;
+    m.z = p.y * across.y;
     return m;
 }
 

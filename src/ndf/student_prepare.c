@@ -135,39 +135,69 @@ static double student_m0(double n)
     return aspi_gamma_ratio(n) * n / (sqrt(ASP_PI) * (2 * n - 1));
 }
 
+/* R at the nodes of one precision: solves T(q) = u for the marginal of m by Halley's method on log T,
+ * which is nearly linear in sqrt q. T0, b: of m. */
+static void student_quantile(double m, double t0, const double b[24], double end,
+                             double r[STUDENT_NODES])
+{
+    const double a = STUDENT_A;
+    double low = a / (a + sqrt(m));
+    int i, j, step;
+    for (i = 0; i < STUDENT_NODES; i++) {
+        double node = 0.5 * end * (1 + aspi_sincos2pi_64(0.25 * (2 * i + 1) / STUDENT_NODES).x);
+        double l = STUDENT_Y_K * node / (1 - node);
+        double h = sqrt(-aspi_expm1_64(-l));                     /* 1 - 2u */
+        double target = -l - aspi_log_64(2 * (1 + h));           /* log u */
+        double root = sqrt(l);
+        for (step = 0; step < 6; step++) {
+            double q = root * root, e = aspi_expm1_64(-0.5 * q / m);
+            double x = sqrt(m * -e * (2 + e)), w = 1 + e, d = a / (a + x);
+            double t = (2 * d - (1 + low)) / (1 - low), sum = 0, value, g, g1, g2;
+            for (j = 23; j >= 0; j--)
+                sum = sum * t + b[j];
+            value = t0 * aspi_exp_64(-q) * d * sum;
+            g = aspi_log_64(value) - target;
+            g1 = -2 * t0 * aspi_exp_64(-q) * (root / x) / value;
+            g2 = g1 * (-2 * root + 1 / root - root * (w / x) * (w / x) - g1);
+            root -= g / g1 / (1 - 0.5 * g * g2 / (g1 * g1));
+        }
+        r[i] = root / sqrt(l);
+    }
+}
+
 void aspi_student_prepare(asp_ndf *out, double n_wanted)
 {
     const double a = STUDENT_A;
     /* 2^58 is infinity: the density's relative error is then x^2/(2n) < 1e-12 for e^-x > 1e-308 */
     double n = n_wanted < 0x1p58 ? n_wanted : 0x1p58, m = n + 0.5;
-    double p[STUDENT_NODES], b[STUDENT_NODES], low;
+    double p[STUDENT_NODES], b[STUDENT_NODES], bm[24], low = a / (a + sqrt(n)), t0;
     double *t = out->table;
 
     memset(t, 0, sizeof out->table);
     student_split(1 / n, t + STUDENT_INVN);
     student_split(n + 1, t + STUDENT_GAMMA);
     student_split(n, t + STUDENT_N);
-    low = a / (a + sqrt(n));
     t[STUDENT_M0] = student_m0(n);
     t[STUDENT_T0] = student_m0(n) * (2 * n - 1) / (2 * n);
     t[STUDENT_SCALE] = 2 / (1 - low);
     t[STUDENT_OFFSET] = -(1 + low) / (1 - low);
+    t[STUDENT_BETA] = (n - 0.5) / n;
     student_nodes(n, t[STUDENT_M0], p, b);
     student_coefficients(p, 14, t + STUDENT_P32);
     student_coefficients(p, 24, t + STUDENT_P64);
     student_coefficients(b, 12, t + STUDENT_B32);
     student_coefficients(b, 24, t + STUDENT_B64);
 
-    low = a / (a + sqrt(m));
-    t[STUDENT_Y_T0] = student_m0(m) * (2 * m - 1) / (2 * m);
-    t[STUDENT_Y_SCALE] = 2 / (1 - low);
-    t[STUDENT_Y_OFFSET] = -(1 + low) / (1 - low);
     t[STUDENT_Y_N] = m;
-    t[STUDENT_Y_INVN] = 1 / m;
+    t[STUDENT_Y_N + 1] = 1 / m;
     t[STUDENT_Y_WIDTH] = sqrt(n / m);
     student_nodes(m, student_m0(m), p, b);
-    student_coefficients(b, 12, t + STUDENT_Y32);
-    student_coefficients(b, 24, t + STUDENT_Y64);
+    student_coefficients(b, 24, bm);
+    t0 = student_m0(m) * (2 * m - 1) / (2 * m);
+    student_quantile(m, t0, bm, STUDENT_Y_END_32, p);
+    student_coefficients(p, 12, t + STUDENT_Y32);
+    student_quantile(m, t0, bm, STUDENT_Y_END_64, p);
+    student_coefficients(p, 26, t + STUDENT_Y64);
 }
 
 #undef STUDENT_NODES
