@@ -111,10 +111,14 @@ static int unknown_option(const cmd_record *record, const char *word)
     names[used++] = "help";
     names[used] = NULL;
     snprintf(given, sizeof given, "%.*s", (int)(length < 70 ? length : 70), word);
-    int begun = 0;
+    const char *begun[64];
+    size_t matches = 0;
     for (size_t i = 0; i < used; i++)
-        begun += strncmp(names[i], given, strlen(given)) == 0;
-    return cmd_unknown(begun > 1 ? "ambiguous option" : "unknown option", given, names);
+        if (strncmp(names[i], given, strlen(given)) == 0)
+            begun[matches++] = names[i];
+    begun[matches] = NULL;
+    return matches > 1 ? cmd_unknown("ambiguous option", given, begun)
+                       : cmd_unknown("unknown option", given, names);
 }
 
 static int add_value(cmd_args *out, int index, const char *text)

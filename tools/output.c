@@ -72,7 +72,7 @@ const char *cmd_nearest(const char *name, const char *const *names)
     size_t best = 3;                       /* further apart is another word, not a slip */
     for (; *names; names++) {
         size_t d = distance(name, *names);
-        if (d < best && d < strlen(*names)) {
+        if (d < best && d < strlen(*names) && d < strlen(name)) {
             best = d;
             nearest = *names;
         }
