@@ -1,6 +1,8 @@
-/* 5_fit.c - measure a surface whose heights are known, and find its slope distribution again
+/* 5_fit.c - read a measurement and find the distribution behind it
  *
- * Installed with `make install PREFIX=...` (and PKG_CONFIG_PATH set when the prefix is your own):
+ * Takes a MERL, RGL or CSV file. Without one it writes a MERL file of a material that it knows, reads
+ * it back and should find the same numbers again. Installed with `make install PREFIX=...` (and
+ * PKG_CONFIG_PATH set when the prefix is your own):
  *
  *     cc -O2 examples/5_fit.c $(pkg-config --cflags --libs asperity-data) -o fit && ./fit
  */
@@ -9,34 +11,47 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-int main(void)
+static asp_rgb known(const void *context, asp_vec3 wi, asp_vec3 wo)
 {
-    asp_fabrication what = asp_fabrication_default();
-    asp_fit_options options = { 0 };
+    return asp_eval(context, wi, wo);
+}
+
+static asp_status write_known(const char *path, asp_error *err)
+{
+    const char *spec = "lambert_specular:diffuse=0.1/0.05/0.02,specular=1,eta=1.5,"
+                       "ndf=(student_t:alpha=0.15,gamma=2.6)";
+    asp_material material;
+    asp_measured *table;
+    asp_status status = asp_material_parse(NULL, spec, &material, err);
+    if (status != ASP_OK)
+        return status;
+    table = asp_measured_from_function(known, &material, spec, err);
+    status = table ? asp_measured_write_merl(table, path, err) : err->status;
+    asp_measured_free(table);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    const char *path = argc > 1 ? argv[1] : "known.binary";
+    const asp_model *model = asp_find_model(NULL, "student_t");
+    const asp_model *models[] = { model, NULL };
+    asp_fit_options options = { .models = models };
     asp_fit_result *fits = NULL;
-    asp_measured *measured;
+    asp_measured *measured = NULL;
     asp_error err;
     char text[512];
     size_t count, i;
 
-    what.surface.size = 512;                /* smaller than the default: this is an example */
-    what.surface.gamma = 3.0;
-    what.rays = 2000000;
-    measured = asp_fabricate(&what, NULL, NULL, NULL, &err);
-    if (!measured || asp_fit(measured, &options, &fits, &count, &err) != ASP_OK) {
+    if ((argc < 2 && write_known(path, &err) != ASP_OK) ||
+        !(measured = asp_measured_read(path, &err)) ||
+        asp_fit(measured, &options, &fits, &count, &err) != ASP_OK) {
         fprintf(stderr, "%s\n", asp_error_text(&err, text, sizeof text));
         asp_measured_free(measured);
         return 1;
     }
-    printf("made with alpha = %.2f, gamma = %.1f\n", what.surface.alpha, what.surface.gamma);
-    for (i = 0; i < count; i++) {
-        size_t p;
-        printf("%-10s error %.2f:", fits[i].model->name, fits[i].error[0]);
-        for (p = 0; p < fits[i].parameter_count; p++)
-            if (fits[i].parameter[p].name[0] == 'a' || fits[i].parameter[p].name[0] == 'g')
-                printf("  %s = %.2f", fits[i].parameter[p].name, fits[i].parameter[p].value);
-        printf("\n");
-    }
+    for (i = 0; i < fits[0].parameter_count; i++)
+        printf("%-10s %.3f\n", fits[0].parameter[i].name, fits[0].parameter[i].value);
     free(fits);
     asp_measured_free(measured);
     return 0;

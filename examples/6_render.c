@@ -14,24 +14,25 @@ int main(void)
         "conductor:metal=Cu,ndf=(ggx:alpha=0.15)",
         "conductor:metal=Cu,ndf=(beckmann:alpha=0.15)"
     };
+    asp_image_options tone = { .tone = { .exposure = -0.4, .soft = 0.5 } };
     asp_image strip = { 0 }, image = { 0 };
     asp_error err;
     char text[512];
     double mean = 0.0;
     int i;
 
-    if (asp_image_make(3 * 96, 96, &strip, &err) != ASP_OK)
+    if (asp_image_make(3 * 192, 192, &strip, &err) != ASP_OK)
         goto failed;
     for (i = 0; i < 3; i++) {
         asp_material copper;
-        asp_preview look = { .material = &copper, .width = 96, .height = 96, .samples = 8 };
+        asp_preview look = { .material = &copper, .width = 192, .height = 192, .samples = 64 };
         if (asp_material_parse(NULL, specs[i], &copper, &err) != ASP_OK ||
             asp_preview_render(&look, &image, &err) != ASP_OK)
             goto failed;
-        asp_image_place(&strip, &image, 96 * i, 0);
+        asp_image_place(&strip, &image, 192 * i, 0);
         asp_image_free(&image);
     }
-    if (asp_image_write(&strip, "spheres.png", NULL, &err) != ASP_OK)
+    if (asp_image_write(&strip, "spheres.png", &tone, &err) != ASP_OK)
         goto failed;
     for (i = 0; i < 3 * strip.width * strip.height; i++)
         mean += strip.rgb[i];

@@ -74,19 +74,17 @@ file() {
     put "$target" "$scratch/file"
 }
 
-# picture FILE COMMAND...: the command writes the file named by its last argument
-picture() {
-    target=$1
-    shift
-    out=$scratch/picture.${target##*.}
-    "$@" "$out" >"$scratch/log" 2>&1 || { cat "$scratch/log"; echo "docs.sh: failed: $*" >&2; exit 1; }
-    put "$target" "$out"
-}
-
 for p in README.md docs/*.md; do
     page "$p"
 done
 file src/asperity_core.c scripts/single-file.sh
+# the README's picture is what the last example writes
+# shellcheck disable=SC2046
+cc -O2 -Iinclude examples/6_render.c "$build/libasperity_draw.a" "$build/libasperity_data.a" \
+    "$build/libasperity.a" $(pkg-config --libs jansson cminpack libpng OpenEXR) -lembree3 -lpthread -lm \
+    -o "$scratch/render"
+(cd "$scratch" && ./render >render.log)
+put docs/images/spheres.png "$scratch/spheres.png"
 file docs/commands.md asperity help --markdown
 
 [ $stale = 0 ] || { echo "$stale stale: run make docs and commit what changed"; exit 1; }
