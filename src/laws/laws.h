@@ -148,7 +148,8 @@ double aspi_radial_integral(aspi_radial_function *f, const void *context);
 double aspi_sigma_by_quadrature(const aspi_trial *t, double w, double s);
 
 /* Directional albedo of the first channel, integral of eval_cos over wo, by adaptive cubature in
- * the slope plane; wi.z > 0. error (may be NULL): an estimate. tolerance is absolute. */
+ * the slope plane; wi.z > 0. tolerance is absolute, and of the estimated error, which is usually
+ * far too large; *error (may be NULL) is that estimate. NaN when out of memory. */
 double aspi_albedo(const asp_material *mat, asp_vec3 wi, double tolerance, double *error);
 
 #endif

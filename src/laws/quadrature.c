@@ -107,17 +107,19 @@ double aspi_sigma_by_quadrature(const aspi_trial *t, double w, double s)
  *
  * R(wi) = integral over facets of eval_cos(wi, wo(m)) 4 (wi.m), m ranging over those that send wi
  * above the horizon: in slopes the disc |p + wi_xy/wi_z| < 1/wi_z. It is covered by rays from the
- * mean slope, r = scale sinh(u X(phi)), and cells in (u, phi) are cut in four until Gauss's rule on
- * the four agrees with the rule on the whole. Nothing is assumed of the integrand, so that kinks of
- * the min() masking and the cusp at wo = n of heavy tails are only dearer. */
+ * mean slope, r = scale sinh(X(phi) (1 - (1 - u)^3)), and cut into cells in (u, phi): the distribution
+ * lives at r = scale, and its masking changes within a roughness of the horizon, at u = 1. Of each cell the change from
+ * Gauss's rule on the whole to the rule on its quarters is known; the cell that changed most is cut
+ * next, until the changes add up to less than the tolerance. Nothing is assumed of the integrand, so
+ * that kinks of the min() masking and the cusp at wo = n of heavy tails are only dearer. */
 
-#define ORDER 8
+#define ORDER 10
 #define NODES (ORDER * ORDER)
 #define SECTORS 8
 
 typedef struct cell {
-    double u0, u1, phi0, phi1, value;
-    int depth;
+    double u0, u1, phi0, phi1;
+    double quarter[4], value, change;   /* value: the sum of the quarters */
 } cell;
 
 typedef struct cubature {
@@ -152,7 +154,8 @@ static double cell_integral(const cubature *q, double u0, double u1, double phi0
         double ex = map->m00 * cx + map->m01 * cy, ey = map->m10 * cx + map->m11 * cy;
         double length = ray_length(q, ex, ey);
         for (j = 0; j < ORDER; j++) {
-            double x = (u0 + (u1 - u0) * q->node[j]) * length, r = q->scale * sinh(x);
+            double v = 1 - (u0 + (u1 - u0) * q->node[j]);
+            double x = (1 - v * v * v) * length, r = q->scale * sinh(x);
             double px = q->origin.x + r * ex, py = q->origin.y + r * ey;
             double mz = 1 / sqrt(1 + px * px + py * py);
             double cosine = mz * (q->wi.z - px * q->wi.x - py * q->wi.y);
@@ -163,7 +166,7 @@ static double cell_integral(const cubature *q, double u0, double u1, double phi0
             wix[k] = q->wi.x;
             wiy[k] = q->wi.y;
             wiz[k] = q->wi.z;
-            jac[k] = 4 * cosine * mz * mz * mz * q->det * r * q->scale * cosh(x) * length
+            jac[k] = 4 * cosine * mz * mz * mz * q->det * r * q->scale * cosh(x) * length * 3 * v * v
                    * q->weight[i] * q->weight[j];
         }
     }
@@ -176,8 +179,8 @@ static double cell_integral(const cubature *q, double u0, double u1, double phi0
     return sum * (u1 - u0) * (phi1 - phi0);
 }
 
-/* The mean slope if some light reflected there stays above the horizon, else the point of the disc
- * next to it. */
+/* The mean slope if light reflected there stays above the horizon by half a roughness, else the
+ * point of the disc next to it that does. */
 static void choose_origin(cubature *q)
 {
     const asp_map *map = &q->mat->ndf.map;
@@ -186,7 +189,7 @@ static void choose_origin(cubature *q)
     double inside = radius - d, wanted = 0.5 * fmin(radius, sqrt(q->det));
     q->origin.x = map->tx;
     q->origin.y = map->ty;
-    if (inside < 1e-3 * wanted) {
+    if (inside < wanted) {
         q->origin.x = cx + dx / d * (radius - wanted);
         q->origin.y = cy + dy / d * (radius - wanted);
     }
@@ -195,59 +198,106 @@ static void choose_origin(cubature *q)
          + 2 * (q->origin.x * q->wi.x + q->origin.y * q->wi.y) / q->wi.z - 1;
 }
 
+static cell make_cell(const cubature *q, double u0, double u1, double phi0, double phi1,
+                      double whole)
+{
+    double um = 0.5 * (u0 + u1), pm = 0.5 * (phi0 + phi1);
+    cell c;
+    c.u0 = u0;
+    c.u1 = u1;
+    c.phi0 = phi0;
+    c.phi1 = phi1;
+    c.quarter[0] = cell_integral(q, u0, um, phi0, pm);
+    c.quarter[1] = cell_integral(q, um, u1, phi0, pm);
+    c.quarter[2] = cell_integral(q, u0, um, pm, phi1);
+    c.quarter[3] = cell_integral(q, um, u1, pm, phi1);
+    c.value = (c.quarter[0] + c.quarter[1]) + (c.quarter[2] + c.quarter[3]);
+    c.change = fabs(c.value - whole);
+    return c;
+}
+
+/* A binary heap, the largest change first. */
+static void push(cell *heap, int *count, cell c)
+{
+    int i = (*count)++;
+    while (i > 0 && heap[(i - 1) / 2].change < c.change) {
+        heap[i] = heap[(i - 1) / 2];
+        i = (i - 1) / 2;
+    }
+    heap[i] = c;
+}
+
+static cell pop(cell *heap, int *count)
+{
+    cell top = heap[0], last = heap[--*count];
+    int i = 0;
+    for (;;) {
+        int child = 2 * i + 1;
+        if (child + 1 < *count && heap[child + 1].change > heap[child].change)
+            child++;
+        if (child >= *count || !(heap[child].change > last.change))
+            break;
+        heap[i] = heap[child];
+        i = child;
+    }
+    if (*count > 0)
+        heap[i] = last;
+    return top;
+}
+
+static void prepare_cubature(cubature *q, const asp_material *mat, asp_vec3 wi, double *phi_start)
+{
+    double r;
+    asp_vec3 half = aspi_unit(wi.x, wi.y, wi.z + 1);
+    q->mat = mat;
+    q->wi = wi;
+    q->det = fabs(mat->ndf.map.m00 * mat->ndf.map.m11 - mat->ndf.map.m01 * mat->ndf.map.m10);
+    aspi_standard_polar(&mat->ndf, asp_sample_normal(&mat->ndf, 0.5, 0.25), &q->scale, phi_start);
+    aspi_standard_polar(&mat->ndf, half, &r, phi_start); /* the cusp lies on an edge of cells */
+    if (!(q->scale > 0 && q->scale < 1e30))
+        q->scale = 1;
+    if (!(*phi_start == *phi_start))
+        *phi_start = 0;
+    aspi_gauss(ORDER, q->node, q->weight);
+    choose_origin(q);
+}
+
 double aspi_albedo(const asp_material *mat, asp_vec3 wi, double tolerance, double *error)
 {
-    enum { LIMIT = 512, DEEPEST = 30, MOST = 40000 };
-    cell stack[LIMIT];
+    enum { MOST = 4000 };
+    cell *heap = (cell *)malloc(MOST * sizeof *heap);
     cubature q;
-    double total = 0, doubt = 0, phi_start, r;
-    int top = 0, i, j, done = 0;
-    asp_vec3 half = aspi_unit(wi.x, wi.y, wi.z + 1);
-    q.mat = mat;
-    q.wi = wi;
-    q.det = fabs(mat->ndf.map.m00 * mat->ndf.map.m11 - mat->ndf.map.m01 * mat->ndf.map.m10);
-    aspi_standard_polar(&mat->ndf, asp_sample_normal(&mat->ndf, 0.5, 0.25), &q.scale, &phi_start);
-    aspi_standard_polar(&mat->ndf, half, &r, &phi_start); /* the cusp lies on an edge of cells */
-    if (!(q.scale > 0 && q.scale < 1e30))
-        q.scale = 1;
-    if (!(phi_start == phi_start))
-        phi_start = 0;
-    aspi_gauss(ORDER, q.node, q.weight);
-    choose_origin(&q);
+    double total = 0, doubt = 0, phi_start;
+    int count = 0, i, j;
+    if (!heap) {
+        if (error)
+            *error = INFINITY;
+        return NAN;
+    }
+    prepare_cubature(&q, mat, wi, &phi_start);
     for (i = 0; i < SECTORS; i++)
         for (j = 0; j < 4; j++) {
-            cell *c = &stack[top++];
-            c->u0 = j / 4.0;
-            c->u1 = (j + 1) / 4.0;
-            c->phi0 = phi_start + 2 * ASPI_PI * i / SECTORS;
-            c->phi1 = phi_start + 2 * ASPI_PI * (i + 1) / SECTORS;
-            c->depth = 0;
-            c->value = cell_integral(&q, c->u0, c->u1, c->phi0, c->phi1);
+            double phi0 = phi_start + 2 * ASPI_PI * i / SECTORS;
+            double phi1 = phi_start + 2 * ASPI_PI * (i + 1) / SECTORS;
+            double whole = cell_integral(&q, j / 4.0, (j + 1) / 4.0, phi0, phi1);
+            cell c = make_cell(&q, j / 4.0, (j + 1) / 4.0, phi0, phi1, whole);
+            doubt += c.change;
+            push(heap, &count, c);
         }
-    while (top > 0) {
-        cell c = stack[--top], part[4];
-        double um = 0.5 * (c.u0 + c.u1), pm = 0.5 * (c.phi0 + c.phi1), sum = 0, change;
+    while (doubt > tolerance && count + 4 <= MOST) {
+        cell c = pop(heap, &count);
+        double um = 0.5 * (c.u0 + c.u1), pm = 0.5 * (c.phi0 + c.phi1);
+        doubt -= c.change;
         for (i = 0; i < 4; i++) {
-            part[i].u0 = i & 1 ? um : c.u0;
-            part[i].u1 = i & 1 ? c.u1 : um;
-            part[i].phi0 = i & 2 ? pm : c.phi0;
-            part[i].phi1 = i & 2 ? c.phi1 : pm;
-            part[i].depth = c.depth + 1;
-            part[i].value = cell_integral(&q, part[i].u0, part[i].u1, part[i].phi0, part[i].phi1);
-            sum += part[i].value;
-        }
-        change = fabs(sum - c.value);
-        done++;
-        /* the first cut is always made: a peak between the nodes of one rule shows in the next */
-        if ((change > tolerance && c.depth < DEEPEST && done < MOST && top + 4 <= LIMIT)
-            || c.depth == 0) {
-            for (i = 0; i < 4; i++)
-                stack[top++] = part[i];
-        } else {
-            total += sum;
-            doubt += change;
+            cell part = make_cell(&q, i & 1 ? um : c.u0, i & 1 ? c.u1 : um, i & 2 ? pm : c.phi0,
+                                  i & 2 ? c.phi1 : pm, c.quarter[i]);
+            doubt += part.change;
+            push(heap, &count, part);
         }
     }
+    for (i = 0; i < count; i++)
+        total += heap[i].value;
+    free(heap);
     if (error)
         *error = doubt;
     return total;

@@ -1,0 +1,91 @@
+/* test_golden_energy.c - single-scattering albedo of a perfect mirror surface against the golden
+ * files, by cubature of asp_eval_cos: masking, density and Jacobians together, both maskings.
+ * Tolerance: ten times the golden's own error estimate plus 1e-9. */
+#include "golden.h"
+#include "laws/laws.h"
+
+typedef struct file_row {
+    const char *file;
+    const char *alpha_x, *alpha_y, *mean_x, *mean_y, *rho, *gamma;   /* columns or NULL */
+    const char *model;
+} file_row;
+
+static const file_row files[] = {
+    { "energy_std.csv", "sigma", "sigma", NULL, NULL, NULL, "gamma", "student_t" },
+    { "energy_std_aniso.csv", "sigma_x", "sigma_y", NULL, NULL, NULL, "gamma", "student_t" },
+    { "energy_beckmann.csv", "alpha", "alpha", NULL, NULL, NULL, NULL, "beckmann" },
+    { "energy_ggx.csv", "alpha", "alpha", NULL, NULL, NULL, NULL, "ggx" },
+    { "energy_ellipsoid.csv", "alpha_x", "alpha_y", NULL, NULL, NULL, NULL, "ellipsoid" },
+    { "energy_ellipsoid_std.csv", "sig_x", "sig_y", "mean_slope_x", "mean_slope_y", "rho", "gamma",
+      "student_t" },
+};
+
+static double optional(const golden *g, const char *name) { return name ? golden_value(g, name) : 0; }
+
+static int has_column(const golden *g, const char *name)
+{
+    int i;
+    for (i = 0; i < g->columns; i++)
+        if (strcmp(g->names[i], name) == 0)
+            return 1;
+    return 0;
+}
+
+static asp_status make(const file_row *f, const golden *g, asp_ndf *out)
+{
+    double ax = golden_value(g, f->alpha_x), ay = golden_value(g, f->alpha_y);
+    double gamma = optional(g, f->gamma), A[9];
+    asp_map map;
+    asp_status s;
+    if (strcmp(f->model, "ellipsoid") == 0) {
+        s = asp_ellipsoid_matrix(ax, ay, golden_value(g, "theta_x"), golden_value(g, "theta_y"),
+                                 golden_value(g, "theta_z"), A, NULL);
+        s = s ? s : asp_map_from_matrix(A, &map, NULL);
+    } else
+        s = asp_map_from_correlation(ax, ay, optional(g, f->rho), optional(g, f->mean_x),
+                                     optional(g, f->mean_y), &map, NULL);
+    return s ? s : asp_ndf_make(asp_find_model(NULL, f->model), &map, f->gamma ? &gamma : NULL, out,
+                                NULL);
+}
+
+int main(void)
+{
+    static const int masks[2] = { ASP_MASK_UNCORRELATED, ASP_MASK_CORRELATED };
+    static const char *const columns[2] = { "R_separable", "R_height_correlated" };
+    size_t i;
+    if (!golden_folder())
+        return golden_skip();
+    for (i = 0; i < sizeof files / sizeof files[0]; i++) {
+        golden g;
+        golden_column c[2];
+        double doubted = 0;
+        int k;
+        if (!golden_open(&g, files[i].file))
+            return golden_skip();
+        memset(c, 0, sizeof c);
+        while (golden_next(&g)) {
+            asp_ndf ndf;
+            asp_vec3 wi = golden_direction(golden_value(&g, "theta_v"),
+                                           has_column(&g, "phi_v") ? golden_value(&g, "phi_v") : 0);
+            if (make(&files[i], &g, &ndf) != ASP_OK) {
+                golden_expect(0, "a distribution could not be made");
+                continue;
+            }
+            for (k = 0; k < 2; k++) {
+                asp_material mat = asp_mirror(&ndf, masks[k]);
+                double doubt, exact = golden_value(&g, columns[k]);
+                double allowed = 10 * golden_value(&g, "est_err") + 1e-9;
+                double found = aspi_albedo(&mat, wi, allowed / 2, &doubt);
+                c[k].name = columns[k];
+                golden_note(&c[k], &g, fabs(found - exact), allowed, found, exact);
+                doubted = fmax(doubted, doubt);
+            }
+        }
+        printf("%s: our own estimate of the cubature's error, at most %.1e\n", files[i].file,
+               doubted);
+        golden_print(&c[0]);
+        golden_print(&c[1]);
+        golden_close(&g);
+    }
+    return golden_result();
+}
