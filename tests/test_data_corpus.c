@@ -37,7 +37,7 @@ static int run(fuzz_entry *entry, const unsigned char *bytes, size_t size)
 static long replay(fuzz_entry *entry, unsigned char *bytes, size_t size)
 {
     long runs = 0;
-    size_t step = 1 + size / 600;
+    size_t step = 1 + size / 150;
     for (size_t n = 0; n < size; n += step, runs++)
         run(entry, bytes, n);
     for (size_t i = 0; i < size; i += step)
