@@ -98,11 +98,12 @@ static void test_positions(void)
             double v = value[i] * factor;
             double t = logarithmic ? log(v / low) / log(high / low) : (v - low) / (high - low);
             double expected = points[0][0] + t * (points[n - 1][0] - points[0][0]);
-            /* the labels are rounded to what they show: never more than 2 % of the axis */
+            /* a label is rounded to the digits it shows: at most 0.1 % of the axis */
             CHECK(fabs(px[i] - expected) < 0.02 + 1e-3 * fabs(points[n - 1][0] - points[0][0]),
                   "[%g, %g]: label %g at %g, belongs at %g", low, high, v, px[i], expected);
-            CHECK(i == 0 || (v > value[i - 1] * factor && px[i] > px[i - 1] + 18),
-                  "[%g, %g]: labels %g and %g collide or repeat", low, high, value[i - 1] * factor, v);
+            if (i > 0)
+                CHECK(v > value[i - 1] * factor && px[i] > px[i - 1] + 18,
+                      "[%g, %g]: labels %g and %g collide or repeat", low, high, value[i - 1] * factor, v);
         }
         for (int i = 0; i < n; i++)
             CHECK(fabs(points[i][0] - (points[0][0] + i / 32.0 * (points[32][0] - points[0][0]))) < 0.011,
@@ -127,8 +128,7 @@ static void test_degrees(void)
     char *svg = draw(&chart);
     double px[64], value[64];
     int n = x_ticks(svg, frame_bottom(svg), px, value);
-    CHECK(n == 7 && value[0] == 0 && value[1] == 15 && value[6] == 90, "%d ticks from %g to %g", n, value[0],
-          value[n - 1]);
+    CHECK(n == 7 && value[0] == 0 && value[1] == 15 && value[6] == 90, "%d ticks", n);
     free(svg);
     chart.x.step = 30;
     svg = draw(&chart);
