@@ -25,6 +25,8 @@ void aspi_csv_row(aspi_out *out, const double *number, int count)
     aspi_out_write(out, row, used);
 }
 
+static double zenith(asp_vec3 w) { return atan2(sqrt(w.x * w.x + w.y * w.y), w.z); }
+
 /* The grid lies in half and difference angles, where highlights are narrow in one angle only:
  * theta_h at ((i+1/2)/45)^2 of a right angle for i = 0..44, theta_d = 2.5, 7.5 .. 87.5 deg,
  * phi_d = 7.5, 22.5 .. 352.5 deg, and phi_h = 0 (isotropic) or 0, 30 .. 330 deg. Only geometries
@@ -50,8 +52,8 @@ asp_status aspi_csv_sampled(const asp_measured *measured, aspi_out *out, asp_err
                     if (wi.z <= 0 || wo.z <= 0)
                         continue;
                     asp_rgb f = asp_measured_eval(measured, wi, wo);
-                    const double row[7] = { acos(fmin(1, wi.z)), atan2(wi.y, wi.x),
-                                            acos(fmin(1, wo.z)), atan2(wo.y, wo.x), f.r, f.g, f.b };
+                    const double row[7] = { zenith(wi), atan2(wi.y, wi.x), zenith(wo),
+                                            atan2(wo.y, wo.x), f.r, f.g, f.b };
                     aspi_csv_row(out, row, 7);
                 }
     return ASP_OK;
