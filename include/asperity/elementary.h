@@ -16,12 +16,14 @@
 #define aspi_sqrt ASP_NAME(aspi_sqrt)
 #define aspi_to_bits ASP_NAME(aspi_to_bits)
 #define aspi_from_bits ASP_NAME(aspi_from_bits)
+#define aspi_select ASP_NAME(aspi_select)
 #define aspi_high ASP_NAME(aspi_high)
 #define aspi_product_error ASP_NAME(aspi_product_error)
 #define aspi_exp ASP_NAME(aspi_exp)
 #define aspi_exp_series ASP_NAME(aspi_exp_series)
 #define aspi_exp_less ASP_NAME(aspi_exp_less)
 #define aspi_expm1 ASP_NAME(aspi_expm1)
+#define aspi_log_rest ASP_NAME(aspi_log_rest)
 #define aspi_log_parts ASP_NAME(aspi_log_parts)
 #define aspi_log ASP_NAME(aspi_log)
 #define aspi_log_near ASP_NAME(aspi_log_near)
@@ -56,6 +58,14 @@ ASP_FN asp_real aspi_from_bits(asp_bits b)
     asp_real x;
     memcpy(&x, &b, sizeof x);
     return x;
+}
+
+/* a where the condition is 1, b where it is 0, by bits: the compiler cannot turn it into a branch
+ * around what a or b cost, which would keep a loop from being vectorised. */
+ASP_FN asp_real aspi_select(int condition, asp_real a, asp_real b)
+{
+    asp_bits mask = (asp_bits)((asp_bits)0 - (asp_bits)condition);
+    return aspi_from_bits((aspi_to_bits(a) & mask) | (aspi_to_bits(b) & (asp_bits)~mask));
 }
 
 #if ASP_PRECISION == 64
@@ -140,8 +150,8 @@ ASP_FN asp_real aspi_exp_series(asp_real r)
  * bounded above by construction. */
 ASP_FN asp_real aspi_exp_less(asp_real x, asp_real low)
 {
-    asp_real y = x > R(ASP_EXP_LOW) ? x : R(ASP_EXP_LOW);
-    asp_real z = y < R(ASP_EXP_HIGH) ? y : R(ASP_EXP_HIGH);
+    asp_real y = x < R(ASP_EXP_LOW) ? R(ASP_EXP_LOW) : x;
+    asp_real z = y > R(ASP_EXP_HIGH) ? R(ASP_EXP_HIGH) : y;
     asp_real shifted = z * R(1.44269504088896340736) + R(ASP_ROUND_SHIFT);
     asp_real k = shifted - R(ASP_ROUND_SHIFT);
     asp_real r = ((z - k * R(ASP_LN2_HIGH)) - k * R(ASP_LN2_LOW)) - low;
@@ -149,9 +159,7 @@ ASP_FN asp_real aspi_exp_less(asp_real x, asp_real low)
     /* the low bits of `shifted` hold k: make 2^k of them */
     asp_real scale = aspi_from_bits((asp_bits)((aspi_to_bits(shifted) + (asp_bits)ASP_EXPONENT_BIAS)
                                     << ASP_FRACTION_BITS));
-    e = e * scale;
-    e = x < R(ASP_EXP_LOW) ? R(0.0) : e;
-    return x == x ? e : x;
+    return x < R(ASP_EXP_LOW) ? R(0.0) : e * scale;
 }
 
 ASP_FN asp_real aspi_exp(asp_real x) { return aspi_exp_less(x, R(0.0)); }
@@ -159,39 +167,53 @@ ASP_FN asp_real aspi_exp(asp_real x) { return aspi_exp_less(x, R(0.0)); }
 /* e^x - 1, accurate near 0. -1 below ASP_EXP_LOW; above ASP_EXP_HIGH as aspi_exp. */
 ASP_FN asp_real aspi_expm1(asp_real x)
 {
-    asp_real y = x > R(ASP_EXP_LOW) ? x : R(ASP_EXP_LOW);
-    asp_real z = y < R(ASP_EXP_HIGH) ? y : R(ASP_EXP_HIGH);
+    asp_real y = x < R(ASP_EXP_LOW) ? R(ASP_EXP_LOW) : x;
+    asp_real z = y > R(ASP_EXP_HIGH) ? R(ASP_EXP_HIGH) : y;
     asp_real shifted = z * R(1.44269504088896340736) + R(ASP_ROUND_SHIFT);
     asp_real k = shifted - R(ASP_ROUND_SHIFT);
     asp_real r = (z - k * R(ASP_LN2_HIGH)) - k * R(ASP_LN2_LOW);
     asp_real scale = aspi_from_bits((asp_bits)((aspi_to_bits(shifted) + (asp_bits)ASP_EXPONENT_BIAS)
                                     << ASP_FRACTION_BITS));
-    asp_real e = (scale - R(1.0)) + scale * (r + (r * r) * aspi_exp_series(r));
-    return x == x ? e : x;
+    return (scale - R(1.0)) + scale * (r + (r * r) * aspi_exp_series(r));
 }
 
-/* log(2^k (1 + f)) = k ln 2 + 2 atanh(s), s = f/(2 + f), |s| <= 0.1716. */
-ASP_FN asp_real aspi_log_parts(asp_real k, asp_real f)
+/* f - log(1 + f) for 1 + f within [sqrt(1/2), sqrt(2)). In float64 by the series of 2 atanh(s) =
+ * log(1 + f), s = f/(2 + f), |s| <= 0.1716: f - 2 atanh(s) = s (f - s^2 p). In float32 a polynomial,
+ * which saves the division: f^2/2 - f^3 q, q by scripts/log_series.py, relative error 4e-9. */
+ASP_FN asp_real aspi_log_rest(asp_real f)
 {
+#if ASP_PRECISION == 64
     asp_real s = f / (R(2.0) + f);
     asp_real z = s * s;
-    asp_real p;
-#if ASP_PRECISION == 64
-    p = R(2.0 / 21.0);
+    asp_real p = R(2.0 / 21.0);
     p = p * z + R(2.0 / 19.0);
     p = p * z + R(2.0 / 17.0);
     p = p * z + R(2.0 / 15.0);
     p = p * z + R(2.0 / 13.0);
     p = p * z + R(2.0 / 11.0);
     p = p * z + R(2.0 / 9.0);
-#else
-    p = R(2.0 / 9.0);
-#endif
     p = p * z + R(2.0 / 7.0);
     p = p * z + R(2.0 / 5.0);
     p = p * z + R(2.0 / 3.0);
-    /* 2 atanh(s) = f - s f + s z p: f is exact, so only the small second part is rounded */
-    return k * R(ASP_LN2_HIGH) + (f - (s * (f - z * p) - k * R(ASP_LN2_LOW)));
+    return s * (f - z * p);
+#else
+    asp_real z = f * f;
+    asp_real even = R(0.07149753891), odd = R(-0.1157120073);
+    even = even * z + R(0.1166151107);
+    odd = odd * z + R(-0.1241105068);
+    even = even * z + R(0.1424993653);
+    odd = odd * z + R(-0.1666848024);
+    even = even * z + R(0.2000070748);
+    odd = odd * z + R(-0.2499998905);
+    even = even * z + R(0.3333333119);
+    return z * (R(0.5) - f * (even + f * odd));
+#endif
+}
+
+/* log(2^k (1 + f)): f is exact, so only the small second part is rounded. */
+ASP_FN asp_real aspi_log_parts(asp_real k, asp_real f)
+{
+    return k * R(ASP_LN2_HIGH) + (f - (aspi_log_rest(f) - k * R(ASP_LN2_LOW)));
 }
 
 /* log x for a caller who knows x - 1 better than x: x_less_1 replaces it for x within [sqrt(1/2),
@@ -228,8 +250,7 @@ ASP_FN asp_real aspi_log1p(asp_real x)
     /* 2^-k */
     asp_real scale = aspi_from_bits((asp_bits)(aspi_to_bits(R(1.0)) - shift));
     asp_real f = (aspi_from_bits((asp_bits)(b - shift)) - R(1.0)) + lost * scale;
-    asp_real y = aspi_log_parts(k, f);
-    return x == x ? y : x;
+    return aspi_log_parts(k, f);
 }
 
 /* log(1 + x + low) as the sum .x + .y, |low| at most an ulp of x >= 0: about twice as many bits as
@@ -249,31 +270,13 @@ ASP_FN asp_v2 aspi_log1p_sum(asp_real x, asp_real low)
     asp_real add = lost * scale;
     asp_real f = f0 + add;
     asp_real f_low = (add - (f - f0)) + low * scale;
-    /* log(1 + f) = f - t, t = s (f - z p) as in aspi_log_parts */
-    asp_real s = f / (R(2.0) + f);
-    asp_real z = s * s;
-    asp_real p, t, a, kh;
+    asp_real t = aspi_log_rest(f), a, kh;
     asp_v2 out;
-#if ASP_PRECISION == 64
-    p = R(2.0 / 21.0);
-    p = p * z + R(2.0 / 19.0);
-    p = p * z + R(2.0 / 17.0);
-    p = p * z + R(2.0 / 15.0);
-    p = p * z + R(2.0 / 13.0);
-    p = p * z + R(2.0 / 11.0);
-    p = p * z + R(2.0 / 9.0);
-#else
-    p = R(2.0 / 9.0);
-#endif
-    p = p * z + R(2.0 / 7.0);
-    p = p * z + R(2.0 / 5.0);
-    p = p * z + R(2.0 / 3.0);
-    t = s * (f - z * p);
     a = f - t;
     kh = k * R(ASP_LN2_HIGH);
     out.x = kh + a;
-    /* what the two additions rounded away, ln 2's tail, and f_low / (1 + f) */
-    out.y = (((kh - out.x) + a) + ((f - a) - t)) + (k * R(ASP_LN2_LOW) + f_low * (R(1.0) - (s + s)));
+    /* what the two additions rounded away, ln 2's tail, and nearly f_low / (1 + f) */
+    out.y = (((kh - out.x) + a) + ((f - a) - t)) + (k * R(ASP_LN2_LOW) + f_low * (R(1.0) - f));
     return out;
 }
 

@@ -7,6 +7,7 @@
 #ifndef STUDENT_KERNEL_NAMES
 #define STUDENT_KERNEL_NAMES
 #define student_decay ASP_NDF_NAME(_decay)
+#define student_decay_exact ASP_NDF_NAME(_decay_exact)
 #define student_p ASP_NDF_NAME(_p)
 #define student_b ASP_NDF_NAME(_b)
 #define student_point ASP_NDF_NAME(_point)
@@ -24,48 +25,45 @@
     STUDENT_STEP(c, (i) + 2) STUDENT_STEP(c, i)
 #endif
 
-/* (1 + invn (a + a_low) / den)^-p with p = table[power]; e^-(a + a_low)/den for the Gaussian, where
- * p is not used. a >= 0, |a_low| below an ulp of a, den > 0. In float32 the exponent, which may
- * reach 87, is carried in two numbers from the quotient on: its own rounding errors would come out
- * magnified by the exponent. */
-ASP_FN asp_real student_decay(const asp_shape *k, int power, asp_real a, asp_real a_low,
-                              asp_real den)
+/* (1 + x/n)^-p with p = table[power]; e^-x for the Gaussian, where p is not used. In float32 the
+ * relative error is that of x and p times the exponent, as of every power. */
+ASP_FN asp_real student_decay(const asp_shape *k, int power, asp_real x)
+{
+#if STUDENT_GAUSSIAN
+    (void)k;
+    (void)power;
+    return aspi_exp(-x);
+#else
+    return aspi_exp(-(k->table[power] * aspi_log1p(x * k->table[STUDENT_INVN])));
+#endif
+}
+
+/* The same for x = a/z, r = 1/z rounded. In float32 the exponent, which may reach 87, is carried in
+ * two numbers from the quotient on, so that its rounding errors do not come out magnified. */
+ASP_FN asp_real student_decay_exact(const asp_shape *k, int power, asp_real a, asp_real z,
+                                    asp_real r)
 {
 #if ASP_PRECISION == 64
-    asp_real e = a / den;
-    (void)a_low;
-    (void)power;
-#if !STUDENT_GAUSSIAN
-    e = k->table[power] * aspi_log1p(e * k->table[STUDENT_INVN]);
-#else
-    (void)k;
-#endif
-    return aspi_exp(-e);
-#else
-    asp_real r = R(1.0) / den;
-#if STUDENT_GAUSSIAN
+    (void)z;
+    return student_decay(k, power, a * r);
+#elif STUDENT_GAUSSIAN
     asp_real y = a * r;
-    asp_real y_low = (a_low - aspi_product_error(y, den, a)) * r;
     (void)k;
     (void)power;
-    return aspi_exp_less(-y, y_low);
+    return aspi_exp_less(-y, aspi_product_error(y, z, a) * -r);
 #else
-    /* a/n exactly */
-    asp_real ah = aspi_high(a), al = (a - ah) + a_low;
-    asp_real nh = k->table[STUDENT_INVN + 1], nl = k->table[STUDENT_INVN + 2];
-    asp_real main = ah * nh, rest = ah * nl + al * k->table[STUDENT_INVN];
-    asp_real b = main + rest;
-    asp_real b_low = rest - (b - main);
-    /* y = b/den */
+    /* a/n */
+    asp_real ah = aspi_high(a), al = a - ah;
+    asp_real main = ah * k->table[STUDENT_INVN + 1];
+    asp_real rest = ah * k->table[STUDENT_INVN + 2] + al * k->table[STUDENT_INVN];
+    asp_real b = main + rest, b_low = rest - (b - main);
+    /* y = b/z */
     asp_real y = b * r;
-    asp_real y_low = (b_low - aspi_product_error(y, den, b)) * r;
-    asp_v2 l = aspi_log1p_sum(y, y_low);
+    asp_v2 l = aspi_log1p_sum(y, (b_low - aspi_product_error(y, z, b)) * r);
     /* p l */
     asp_real lh = aspi_high(l.x), ll = (l.x - lh) + l.y;
-    asp_real e = lh * k->table[power + 1];
     asp_real e_low = ll * k->table[power] + lh * k->table[power + 2];
-    return aspi_exp_less(-e, e_low);
-#endif
+    return aspi_exp_less(-(lh * k->table[power + 1]), e_low);
 #endif
 }
 
@@ -93,20 +91,22 @@ ASP_FN asp_real student_p(const asp_shape *k, asp_real d)
 ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
 {
     asp_real z = aspi_max(z2, ASP_PRECISION == 64 ? R(1e-150) : R(1e-18));
-    return student_decay(k, STUDENT_GAMMA, r2, R(0.0), z) * (R(1.0 / ASP_PI) / (z * z));
+    asp_real r = R(1.0) / z;
+    return student_decay_exact(k, STUDENT_GAMMA, r2, z, r) * (r * r * R(1.0 / ASP_PI));
 }
 
 /* sigma = max(w, 0) + s J(|w|/s), J as in student.h. With g2 = s2 + w^2/n all is homogeneous. */
 ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
 {
-    asp_real h = aspi_abs(w);
-    asp_real w2 = w * w;
-    asp_real den = aspi_max(s2, ASP_PRECISION == 64 ? R(1e-290) : R(1e-24));
-    asp_real g = aspi_sqrt(STUDENT_GAUSSIAN ? s2 : s2 + w2 * k->table[STUDENT_INVN]);
+    asp_real h = aspi_abs(w), w2 = w * w;
+    asp_real den = aspi_max(s2, ASP_PRECISION == 64 ? R(1e-200) : R(1e-24));
+    asp_real g = aspi_sqrt(STUDENT_GAUSSIAN ? den : den + w2 * k->table[STUDENT_INVN]);
     asp_real ag = R(STUDENT_A) * g;
-    asp_real d = ag / aspi_max(h + ag, R(1e-37));
-    asp_real low = ASP_PRECISION == 64 ? R(0.0) : aspi_product_error(w, w, w2);
-    asp_real tail = student_decay(k, STUDENT_N, w2, low, den) * (d * d) * student_p(k, d)
+    asp_real sum = h + ag;
+    /* one division for two quotients */
+    asp_real inverse = R(1.0) / (den * sum);
+    asp_real d = ag * (den * inverse), r = sum * inverse;
+    asp_real tail = student_decay(k, STUDENT_N, w2 * r) * (d * d) * student_p(k, d)
                   * (g * k->table[STUDENT_M0]);
     return aspi_max(w, R(0.0)) + (s2 > R(0.0) ? tail : R(0.0));
 }
