@@ -14,22 +14,21 @@
 #undef ASP_PRECISION
 
 #else
-#include "asperity/facet.h"
 #include "core/blocks.h"
 
 #ifndef ASPI_FACETS_NAMES
 #define ASPI_FACETS_NAMES
 #define visible_density ASP_NAME(visible_density)
+#define block_density ASP_NAME(block_density)
+#define block_sigma ASP_NAME(block_sigma)
+#define block_visible ASP_NAME(block_visible)
+#define block_lambda ASP_NAME(block_lambda)
+#define block_normal ASP_NAME(block_normal)
 #define visible_of ASP_NAME(visible_of)
 #define normal_of ASP_NAME(normal_of)
 #define masking ASP_NAME(masking)
 #define lambda_of ASP_NAME(lambda_of)
 #define joint_masking ASP_NAME(joint_masking)
-#define loop_density_in ASP_NAME(loop_density_in)
-#define loop_density_out ASP_NAME(loop_density_out)
-#define loop_view ASP_NAME(loop_view)
-#define loop_view_vectors ASP_NAME(loop_view_vectors)
-#define loop_back ASP_NAME(loop_back)
 #define loop_masking ASP_NAME(loop_masking)
 #define loop_hidden ASP_NAME(loop_hidden)
 #define loop_joint ASP_NAME(loop_joint)
@@ -182,78 +181,6 @@ asp_v3 ASPI_CALL(asp_mean_normal)(const asp_shape *k)
 
 /* ---- loops */
 
-ASP_CLONES static void loop_density_in(const asp_shape *k, size_t n, IN x, IN y, IN z, OUT r2,
-                                       OUT z2, OUT mz)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_v3 m;
-        asp_v2 a;
-        m.x = x[i];
-        m.y = y[i];
-        m.z = z[i];
-        a = aspi_density_arguments(k, m);
-        r2[i] = a.x;
-        z2[i] = a.y;
-        mz[i] = m.z;
-    }
-}
-
-ASP_CLONES static void loop_density_out(const asp_shape *k, size_t n, IN standard, IN mz, OUT out)
-{
-    size_t i;
-    for (i = 0; i < n; i++)
-        out[i] = aspi_density_result(k, standard[i], mz[i]);
-}
-
-/* height and squared length of the standard view; sign = -1 looks from below */
-ASP_CLONES static void loop_view(const asp_shape *k, size_t n, asp_real sign, IN x, IN y, IN z,
-                                 OUT w, OUT s2)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_v3 v;
-        v.x = x[i];
-        v.y = y[i];
-        v.z = z[i];
-        v = aspi_view(k, v);
-        w[i] = sign * v.z;
-        s2[i] = aspi_length2(v);
-    }
-}
-
-ASP_CLONES static void loop_view_vectors(const asp_shape *k, size_t n, IN x, IN y, IN z, OUT vx,
-                                         OUT vy, OUT vz)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_v3 v;
-        v.x = x[i];
-        v.y = y[i];
-        v.z = z[i];
-        v = aspi_view(k, v);
-        vx[i] = v.x;
-        vy[i] = v.y;
-        vz[i] = v.z;
-    }
-}
-
-ASP_CLONES static void loop_back(const asp_shape *k, size_t n, IN x, IN y, IN z, OUT mx, OUT my,
-                                 OUT mz)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_v3 m;
-        m.x = x[i];
-        m.y = y[i];
-        m.z = z[i];
-        m = aspi_normalize(aspi_facet_back(k, m));
-        mx[i] = m.x;
-        my[i] = m.y;
-        mz[i] = m.z;
-    }
-}
-
 /* The outputs of these may be one of the inputs: an element is read before it is written. */
 ASP_CLONES static void loop_masking(const asp_shape *k, size_t n, int mask, asp_cv3s w,
                                     const asp_real *sigma, asp_real *out)
@@ -269,7 +196,7 @@ ASP_CLONES static void loop_masking(const asp_shape *k, size_t n, int mask, asp_
     }
 }
 
-ASP_CLONES static void loop_hidden(const asp_shape *k, size_t n, int mask, asp_cv3s w,
+ASP_FN void loop_hidden(const asp_shape *k, size_t n, int mask, asp_cv3s w,
                                    const asp_real *below, asp_real *out)
 {
     size_t i;
@@ -349,33 +276,43 @@ ASP_CLONES static void loop_scale(size_t n, asp_real by, IN a, OUT out)
         out[i] = a[i] * by;
 }
 
-/* ---- blocks */
+/* ---- blocks, one per instruction set */
 
-void aspi_block_density(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
+ASP_CLONES static void block_density(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
 {
-    asp_real r2[ASPI_BLOCK], z2[ASPI_BLOCK], mz[ASPI_BLOCK], d[ASPI_BLOCK];
+    aspi_block_density(k, n, m, out);
+}
+
+ASP_CLONES static void block_sigma(const asp_shape *k, size_t n, asp_cv3s w, asp_real *out)
+{
+    aspi_block_sigma(k, n, w, out);
+}
+
+ASP_CLONES static void block_visible(const asp_shape *k, size_t n, asp_cv3s wi, const asp_real *u1,
+                                     const asp_real *u2, asp_v3s m)
+{
+    aspi_block_visible(k, n, wi, u1, u2, m);
+}
+
+ASP_CLONES static void block_lambda(const asp_shape *k, size_t n, asp_cv3s w, int mask,
+                                    asp_real *out)
+{
+    asp_real h[ASPI_BLOCK], s2[ASPI_BLOCK], below[ASPI_BLOCK];
     if (!n)
         return;
-    loop_density_in(k, n, m.x, m.y, m.z, r2, z2, mz);
-    ASPI_OPS(k).density_n(k, n, r2, z2, d);
-    loop_density_out(k, n, d, mz, out);
+    aspi_loop_view(k, n, R(-1.0), w.x, w.y, w.z, h, s2);
+    ASPI_OPS(k).sigma_n(k, n, h, s2, below);
+    loop_hidden(k, n, mask, w, below, out);
 }
 
-void aspi_block_sigma(const asp_shape *k, size_t n, asp_cv3s w, asp_real *out)
+ASP_CLONES static void block_normal(const asp_shape *k, size_t n, const asp_real *u1,
+                                    const asp_real *u2, asp_v3s m)
 {
-    asp_real h[ASPI_BLOCK], s2[ASPI_BLOCK];
-    loop_view(k, n, R(1.0), w.x, w.y, w.z, h, s2);
-    ASPI_OPS(k).sigma_n(k, n, h, s2, out);
-}
-
-void aspi_block_visible(const asp_shape *k, size_t n, asp_cv3s wi, const asp_real *u1,
-                        const asp_real *u2, asp_v3s m)
-{
-    asp_real vx[ASPI_BLOCK], vy[ASPI_BLOCK], vz[ASPI_BLOCK];
     asp_real x[ASPI_BLOCK], y[ASPI_BLOCK], z[ASPI_BLOCK];
-    loop_view_vectors(k, n, wi.x, wi.y, wi.z, vx, vy, vz);
-    ASPI_OPS(k).visible_n(k, n, vx, vy, vz, u1, u2, x, y, z);
-    loop_back(k, n, x, y, z, m.x, m.y, m.z);
+    if (!n)
+        return;
+    ASPI_OPS(k).normal_n(k, n, u1, u2, x, y, z);
+    aspi_loop_back(k, n, x, y, z, m.x, m.y, m.z);
 }
 
 /* ---- batches: block by block; a block's inputs are read before its outputs are written */
@@ -406,7 +343,7 @@ void ASPI_CALL(asp_D_n)(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
 {
     size_t i, size;
     FOR_BLOCKS(i, size, n)
-        aspi_block_density(k, size, FROM(m, i), out + i);
+        block_density(k, size, FROM(m, i), out + i);
 }
 
 void ASPI_CALL(asp_P22_n)(const asp_shape *k, size_t n, const asp_real *p_x, const asp_real *p_y,
@@ -425,7 +362,7 @@ void ASPI_CALL(asp_sigma_n)(const asp_shape *k, size_t n, asp_cv3s w, asp_real *
 {
     size_t i, size;
     FOR_BLOCKS(i, size, n)
-        aspi_block_sigma(k, size, FROM(w, i), out + i);
+        block_sigma(k, size, FROM(w, i), out + i);
 }
 
 void ASPI_CALL(asp_G1_n)(const asp_shape *k, size_t n, asp_cv3s w, int mask, asp_real *out)
@@ -433,20 +370,16 @@ void ASPI_CALL(asp_G1_n)(const asp_shape *k, size_t n, asp_cv3s w, int mask, asp
     asp_real sigma[ASPI_BLOCK];
     size_t i, size;
     FOR_BLOCKS(i, size, n) {
-        aspi_block_sigma(k, size, FROM(w, i), sigma);
+        block_sigma(k, size, FROM(w, i), sigma);
         loop_masking(k, size, mask, FROM(w, i), sigma, out + i);
     }
 }
 
 void ASPI_CALL(asp_lambda_n)(const asp_shape *k, size_t n, asp_cv3s w, int mask, asp_real *out)
 {
-    asp_real h[ASPI_BLOCK], s2[ASPI_BLOCK], below[ASPI_BLOCK];
     size_t i, size;
-    FOR_BLOCKS(i, size, n) {
-        loop_view(k, size, R(-1.0), w.x + i, w.y + i, w.z + i, h, s2);
-        ASPI_OPS(k).sigma_n(k, size, h, s2, below);
-        loop_hidden(k, size, mask, FROM(w, i), below, out + i);
-    }
+    FOR_BLOCKS(i, size, n)
+        block_lambda(k, size, FROM(w, i), mask, out + i);
 }
 
 void ASPI_CALL(asp_G2_n)(const asp_shape *k, size_t n, asp_cv3s wi, asp_cv3s wo, asp_cv3s m,
@@ -455,8 +388,8 @@ void ASPI_CALL(asp_G2_n)(const asp_shape *k, size_t n, asp_cv3s wi, asp_cv3s wo,
     asp_real sigma_i[ASPI_BLOCK], sigma_o[ASPI_BLOCK];
     size_t i, size;
     FOR_BLOCKS(i, size, n) {
-        aspi_block_sigma(k, size, FROM(wi, i), sigma_i);
-        aspi_block_sigma(k, size, FROM(wo, i), sigma_o);
+        block_sigma(k, size, FROM(wi, i), sigma_i);
+        block_sigma(k, size, FROM(wo, i), sigma_o);
         loop_joint(k, size, mask, FROM(wi, i), FROM(wo, i), FROM(m, i), sigma_i, sigma_o,
                    out + i);
     }
@@ -465,13 +398,9 @@ void ASPI_CALL(asp_G2_n)(const asp_shape *k, size_t n, asp_cv3s wi, asp_cv3s wo,
 void ASPI_CALL(asp_sample_normal_n)(const asp_shape *k, size_t n, const asp_real *u1,
                                     const asp_real *u2, asp_v3s m)
 {
-    asp_real x[ASPI_BLOCK], y[ASPI_BLOCK], z[ASPI_BLOCK];
     size_t i, size;
-    FOR_BLOCKS(i, size, n) {
-        asp_v3s out = TO(m, i);
-        ASPI_OPS(k).normal_n(k, size, u1 + i, u2 + i, x, y, z);
-        loop_back(k, size, x, y, z, out.x, out.y, out.z);
-    }
+    FOR_BLOCKS(i, size, n)
+        block_normal(k, size, u1 + i, u2 + i, TO(m, i));
 }
 
 void ASPI_CALL(asp_sample_visible_n)(const asp_shape *k, size_t n, asp_cv3s wi, const asp_real *u1,
@@ -479,7 +408,7 @@ void ASPI_CALL(asp_sample_visible_n)(const asp_shape *k, size_t n, asp_cv3s wi, 
 {
     size_t i, size;
     FOR_BLOCKS(i, size, n)
-        aspi_block_visible(k, size, FROM(wi, i), u1 + i, u2 + i, TO(m, i));
+        block_visible(k, size, FROM(wi, i), u1 + i, u2 + i, TO(m, i));
 }
 
 void ASPI_CALL(asp_pdf_normal_n)(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
@@ -487,7 +416,7 @@ void ASPI_CALL(asp_pdf_normal_n)(const asp_shape *k, size_t n, asp_cv3s m, asp_r
     asp_real d[ASPI_BLOCK];
     size_t i, size;
     FOR_BLOCKS(i, size, n) {
-        aspi_block_density(k, size, FROM(m, i), d);
+        block_density(k, size, FROM(m, i), d);
         loop_times(size, d, m.z + i, out + i);
     }
 }
@@ -498,8 +427,8 @@ void ASPI_CALL(asp_pdf_visible_n)(const asp_shape *k, size_t n, asp_cv3s wi, asp
     asp_real d[ASPI_BLOCK], sigma[ASPI_BLOCK];
     size_t i, size;
     FOR_BLOCKS(i, size, n) {
-        aspi_block_density(k, size, FROM(m, i), d);
-        aspi_block_sigma(k, size, FROM(wi, i), sigma);
+        block_density(k, size, FROM(m, i), d);
+        block_sigma(k, size, FROM(wi, i), sigma);
         loop_visible_density(size, FROM(wi, i), FROM(m, i), d, sigma, out + i);
     }
 }

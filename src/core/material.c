@@ -15,7 +15,6 @@
 #undef ASP_PRECISION
 
 #else
-#include "asperity/facet.h"
 #include "asperity/fresnel.h"
 #include "core/blocks.h"
 #include "core/bsdf_number.h"
@@ -245,8 +244,8 @@ asp_sampled ASPI_CALL(asp_sample)(const asp_mat *mat, asp_v3 wi, asp_real u1, as
 
 /* ---- loops */
 
-ASP_CLONES static void loop_half(size_t n, IN ix, IN iy, IN iz, IN ox, IN oy, IN oz, OUT mx, OUT my,
-                                 OUT mz, OUT c)
+ASP_FN void loop_half(size_t n, IN ix, IN iy, IN iz, IN ox, IN oy, IN oz, OUT mx, OUT my,
+                      OUT mz, OUT c)
 {
     size_t i;
     for (i = 0; i < n; i++) {
@@ -265,8 +264,8 @@ ASP_CLONES static void loop_half(size_t n, IN ix, IN iy, IN iz, IN ox, IN oy, IN
     }
 }
 
-ASP_CLONES static void loop_reflect(size_t n, IN ix, IN iy, IN iz, IN mx, IN my, IN mz, OUT ox,
-                                    OUT oy, OUT oz, OUT c)
+ASP_FN void loop_reflect(size_t n, IN ix, IN iy, IN iz, IN mx, IN my, IN mz, OUT ox,
+                         OUT oy, OUT oz, OUT c)
 {
     size_t i;
     for (i = 0; i < n; i++) {
@@ -286,8 +285,8 @@ ASP_CLONES static void loop_reflect(size_t n, IN ix, IN iy, IN iz, IN mx, IN my,
 }
 
 /* facet_part with scale D/4, times `by` (cosines or ones); y is `by` or 0. */
-ASP_CLONES static void loop_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, asp_cv3s wo,
-                                  IN mz, IN c, IN D, IN sigma_i, IN sigma_o, IN by, OUT x, OUT y)
+ASP_FN void loop_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, asp_cv3s wo,
+                       IN mz, IN c, IN D, IN sigma_i, IN sigma_o, IN by, OUT x, OUT y)
 {
     size_t i;
     ASP_IN_PLACE
@@ -306,8 +305,8 @@ ASP_CLONES static void loop_parts(const asp_shape *k, size_t n, int mask, asp_cv
     }
 }
 
-ASP_CLONES static void loop_weights(const asp_shape *k, size_t n, int mask, asp_cv3s wi,
-                                    IN ox, IN oy, IN oz, IN mz, IN c, IN sigma_i, IN sigma_o, OUT x)
+ASP_FN void loop_weights(const asp_shape *k, size_t n, int mask, asp_cv3s wi,
+                         IN ox, IN oy, IN oz, IN mz, IN c, IN sigma_i, IN sigma_o, OUT x)
 {
     size_t i;
     ASP_IN_PLACE
@@ -323,8 +322,8 @@ ASP_CLONES static void loop_weights(const asp_shape *k, size_t n, int mask, asp_
     }
 }
 
-ASP_CLONES static void loop_lobe_density(size_t n, const asp_real *ci, IN D, IN sigma_i,
-                                         asp_real *out)
+ASP_FN void loop_lobe_density(size_t n, const asp_real *ci, IN D, IN sigma_i,
+                              asp_real *out)
 {
     size_t i;
     ASP_IN_PLACE
@@ -332,8 +331,8 @@ ASP_CLONES static void loop_lobe_density(size_t n, const asp_real *ci, IN D, IN 
         out[i] = lobe_density(ci[i], D[i], sigma_i[i]);
 }
 
-ASP_CLONES static void loop_mixed_density(size_t n, const asp_real *ci, const asp_real *co,
-                                          IN share, asp_real *out)
+ASP_FN void loop_mixed_density(size_t n, const asp_real *ci, const asp_real *co,
+                               IN share, asp_real *out)
 {
     size_t i;
     ASP_IN_PLACE
@@ -342,7 +341,7 @@ ASP_CLONES static void loop_mixed_density(size_t n, const asp_real *ci, const as
 }
 
 /* Cuts u1 in the share of the facets and the rest, each stretched to [0, 1). */
-ASP_CLONES static void loop_choose(size_t n, IN share, IN u1, OUT facet, OUT stretched)
+ASP_FN void loop_choose(size_t n, IN share, IN u1, OUT facet, OUT stretched)
 {
     size_t i;
     for (i = 0; i < n; i++) {
@@ -352,23 +351,23 @@ ASP_CLONES static void loop_choose(size_t n, IN share, IN u1, OUT facet, OUT str
     }
 }
 
-ASP_CLONES static void loop_mixed_direction(size_t n, IN facet, IN u1, IN u2, OUT ox, OUT oy,
-                                            OUT oz)
+ASP_FN void loop_mixed_direction(size_t n, IN facet, IN u1, IN u2, OUT ox, OUT oy,
+                                 OUT oz)
 {
     size_t i;
     for (i = 0; i < n; i++) {
         asp_v3 w = cosine_lobe(u1[i], u2[i]);
-        asp_real x = ox[i], y = oy[i], z = oz[i];
-        ox[i] = facet[i] > R(0.0) ? x : w.x;
-        oy[i] = facet[i] > R(0.0) ? y : w.y;
-        oz[i] = facet[i] > R(0.0) ? z : w.z;
+        int in = facet[i] > R(0.0);
+        ox[i] = aspi_select(in, ox[i], w.x);
+        oy[i] = aspi_select(in, oy[i], w.y);
+        oz[i] = aspi_select(in, oz[i], w.z);
     }
 }
 
 /* What the facets' and the base's terms are multiplied with to give f cos / pdf. */
-ASP_CLONES static void loop_mixed_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, IN ox,
-                                        IN oy, IN oz, IN mz, IN c, IN D, IN sigma_i, IN sigma_o,
-                                        IN pdf, OUT x, OUT y)
+ASP_FN void loop_mixed_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, IN ox,
+                             IN oy, IN oz, IN mz, IN c, IN D, IN sigma_i, IN sigma_o,
+                             IN pdf, OUT x, OUT y)
 {
     size_t i;
     ASP_IN_PLACE
@@ -389,28 +388,28 @@ ASP_CLONES static void loop_mixed_parts(const asp_shape *k, size_t n, int mask, 
     }
 }
 
-ASP_CLONES static void loop_conductor(size_t n, asp_real eta, asp_real kappa, IN c, OUT F)
+ASP_FN void loop_conductor(size_t n, asp_real eta, asp_real kappa, IN c, OUT F)
 {
     size_t i;
     for (i = 0; i < n; i++)
         F[i] = aspi_fresnel_conductor(c[i], eta, kappa);
 }
 
-ASP_CLONES static void loop_f82(size_t n, asp_real f0, asp_real tint, IN c, OUT F)
+ASP_FN void loop_f82(size_t n, asp_real f0, asp_real tint, IN c, OUT F)
 {
     size_t i;
     for (i = 0; i < n; i++)
         F[i] = aspi_fresnel_f82(c[i], f0, tint);
 }
 
-ASP_CLONES static void loop_dielectric(size_t n, asp_real eta, IN c, OUT F)
+ASP_FN void loop_dielectric(size_t n, asp_real eta, IN c, OUT F)
 {
     size_t i;
     for (i = 0; i < n; i++)
         F[i] = aspi_fresnel_dielectric(c[i], eta);
 }
 
-ASP_CLONES static void loop_one(size_t n, IN c, OUT F)
+ASP_FN void loop_one(size_t n, IN c, OUT F)
 {
     size_t i;
     for (i = 0; i < n; i++)
@@ -419,7 +418,7 @@ ASP_CLONES static void loop_one(size_t n, IN c, OUT F)
 
 /* ---- blocks */
 
-static void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c, asp_real *r, asp_real *g,
+ASP_FN void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c, asp_real *r, asp_real *g,
                           asp_real *b)
 {
     switch (mat->fresnel) {
@@ -445,16 +444,18 @@ static void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c, asp_r
     }
 }
 
-static void block_share(const asp_mat *mat, size_t n, const asp_real *ci, asp_real *share)
+ASP_FN void block_share(const asp_mat *mat, size_t n, const asp_real *ci, asp_real *share)
 {
     asp_real F[3][ASPI_BLOCK];
+    if (!n)
+        return;
     block_fresnel(mat, n, ci, F[0], F[1], F[2]);
     mat->model->ASPI_MODEL_CALL(share_n)(mat, n, F[0], F[1], F[2], share);
 }
 
 /* f, or f cos_o where cosine is 1. Outputs may be inputs: they are written last. */
-static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, int cosine,
-                       asp_c3s out)
+ASP_CLONES static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, int cosine,
+                                  asp_c3s out)
 {
     const asp_shape *k = &mat->ndf;
     asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
@@ -462,6 +463,8 @@ static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, i
     asp_real ones[ASPI_BLOCK], F[3][ASPI_BLOCK];
     asp_cv3s m;
     size_t i;
+    if (!n)
+        return;
     for (i = 0; i < n && !cosine; i++)
         ones[i] = R(1.0);
     loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
@@ -471,7 +474,10 @@ static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, i
     aspi_block_density(k, n, m, D);
     aspi_block_sigma(k, n, wi, si);
     aspi_block_sigma(k, n, wo, so);
-    loop_parts(k, n, mat->mask, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
+    if (mat->mask == 0)
+        loop_parts(k, n, 0, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
+    else
+        loop_parts(k, n, mat->mask, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
     block_fresnel(mat, n, c, F[0], F[1], F[2]);
     mat->model->ASPI_MODEL_CALL(value_n)(mat, n, x, y, F[0], F[1], F[2]);
     memcpy(out.r, F[0], n * sizeof *out.r);
@@ -479,12 +485,14 @@ static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, i
     memcpy(out.b, F[2], n * sizeof *out.b);
 }
 
-static void block_pdf(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
+ASP_CLONES static void block_pdf(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
 {
     const asp_shape *k = &mat->ndf;
     asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
     asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], share[ASPI_BLOCK], p[ASPI_BLOCK];
     asp_cv3s m;
+    if (!n)
+        return;
     loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
     m.x = mx;
     m.y = my;
@@ -500,15 +508,18 @@ static void block_pdf(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, as
 }
 
 /* Visible normals only: D cancels in the weight, which is F J sigma_i cos_o. */
-static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s wi, const asp_real *u1,
-                              const asp_real *u2, asp_real o[3][ASPI_BLOCK], asp_real *pdf,
-                              asp_real F[3][ASPI_BLOCK])
+ASP_CLONES static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s wi,
+                                         const asp_real *u1,
+                                         const asp_real *u2, asp_real o[3][ASPI_BLOCK], asp_real *pdf,
+                                         asp_real F[3][ASPI_BLOCK])
 {
     const asp_shape *k = &mat->ndf;
     asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
     asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], so[ASPI_BLOCK], x[ASPI_BLOCK];
     asp_v3s m;
     asp_cv3s cm, wo;
+    if (!n)
+        return;
     cm.x = m.x = mx;
     cm.y = m.y = my;
     cm.z = m.z = mz;
@@ -521,14 +532,18 @@ static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s wi, const a
     aspi_block_sigma(k, n, wi, si);
     aspi_block_sigma(k, n, wo, so);
     loop_lobe_density(n, wi.z, D, si, pdf);
-    loop_weights(k, n, mat->mask, wi, o[0], o[1], o[2], mz, c, si, so, x);
+    if (mat->mask == 0) /* a constant here spares the default the other masks' arithmetic */
+        loop_weights(k, n, 0, wi, o[0], o[1], o[2], mz, c, si, so, x);
+    else
+        loop_weights(k, n, mat->mask, wi, o[0], o[1], o[2], mz, c, si, so, x);
     block_fresnel(mat, n, c, F[0], F[1], F[2]);
     mat->model->ASPI_MODEL_CALL(value_n)(mat, n, x, x, F[0], F[1], F[2]);
 }
 
-static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s wi, const asp_real *u1,
-                               const asp_real *u2, asp_real o[3][ASPI_BLOCK], asp_real *pdf,
-                               asp_real F[3][ASPI_BLOCK])
+ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s wi,
+                                          const asp_real *u1,
+                                          const asp_real *u2, asp_real o[3][ASPI_BLOCK], asp_real *pdf,
+                                          asp_real F[3][ASPI_BLOCK])
 {
     const asp_shape *k = &mat->ndf;
     asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
@@ -536,6 +551,8 @@ static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s wi, const 
     asp_real share[ASPI_BLOCK], facet[ASPI_BLOCK], v1[ASPI_BLOCK];
     asp_v3s m;
     asp_cv3s cm, wo;
+    if (!n)
+        return;
     cm.x = m.x = mx;
     cm.y = m.y = my;
     cm.z = m.z = mz;
