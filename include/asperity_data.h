@@ -125,7 +125,7 @@ typedef struct asp_surface_recipe {
     double gamma;         /* [1.6, infinity] */
 } asp_surface_recipe;
 
-/* seed 1, 1024 points, correlation 8, patch 4, alpha 0.25, gamma 3. */
+/* seed 1, 1024 points, correlation 4, patch 8, alpha 0.25, gamma 3. */
 asp_surface_recipe asp_surface_recipe_default(void);
 
 /* Makes an isotropic, periodic height field with dx = dy = 1. Same recipe, same heights.
@@ -229,7 +229,9 @@ typedef struct asp_loss {
  *               difference of the STD paper, weighted so that grazing angles do not rule
  * log           root mean square of log((1 + m cos(theta_i)) / (1 + d cos(theta_i))): error E2 of
  *               Low et al. 2012; what is below 1/sr hardly counts in relative terms
- * log_relative  root mean square of log((m + 0.001/sr) / (d + 0.001/sr)): peak and tail alike
+ * log_relative  root mean square of log((m + 0.001/sr) / (d + 0.001/sr)): peak and tail alike; the
+ *               default, because it gives back the slopes of a surface with known statistics, where
+ *               nad follows the brightest geometries at grazing angles
  * Ends with NULL. */
 #define ASP_LOSS_LIMIT 8
 const asp_loss *const *asp_losses(void);
@@ -274,7 +276,7 @@ typedef struct asp_fit_result {
 /* Set to zero for the defaults. */
 typedef struct asp_fit_options {
     const asp_model *const *models;       /* ends with NULL, at most 32; NULL: asp_fit_models */
-    const char *loss;                     /* NULL: "nad" */
+    const char *loss;                     /* NULL: "log_relative" */
     int      starts;                      /* polished starts per distribution, [1, 64]; 0: 4 */
     uint64_t seed;                        /* of the jitter of the starts */
     int      mask;                        /* asp_mask */
@@ -290,9 +292,9 @@ size_t asp_fit_models(const asp_model **out, size_t room);
 
 /* The geometries that a fit sees, to be freed with free(); NULL on failure.
  * Scattered data: all listed ones with both directions above the horizon and a finite value.
- * Gridded data: 55 theta_h (every bin of MERL up to 7.8 degrees, every second one above), theta_d =
- * 2.5, 7.5, ... 77.5 degrees, 8 phi_d, all at centres of MERL's bins; anisotropic data at 4 azimuths
- * of the half vector. Left out are geometries with either direction beyond 80 degrees, where
+ * Gridded data: the 84 theta_h of MERL's bins up to 78 degrees, theta_d = 2.5, 7.5, ... 77.5 degrees,
+ * 8 phi_d, all at centres of MERL's bins, so that sums are like sums over a MERL table; anisotropic
+ * data at 4 azimuths of the half vector. Left out are geometries with either direction beyond 80 degrees, where
  * instruments interpolate and microfacet theory ends, and those where no channel has a value
  * above 0. */
 asp_measurement *asp_fit_geometries(const asp_measured *measured, size_t *count, asp_error *err);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define LOSS "log_relative"
 #define MODELS 32
 #define STARTS 4
 #define COARSE 1200            /* geometries, about, on which starts are compared */
@@ -274,7 +275,7 @@ static asp_status check(job *j, const asp_fit_options *options, asp_error *err)
         return asp_fail_range(err, "specular_limit", o->specular_limit, 0, 1, 1000);
     if ((o->mask & ~ASP_MASK_WALL) < 0 || (o->mask & ~ASP_MASK_WALL) > ASP_MASK_V_CAVITY)
         return asp_fail(err, ASP_EINVAL, "mask", "not one of asp_mask");
-    const char *name = o->loss ? o->loss : aspi_losses[0]->about.name;
+    const char *name = o->loss ? o->loss : LOSS;
     j->loss = aspi_find_loss(name);
     if (!j->loss) {
         char reason[192] = "unknown loss; known are";

@@ -50,7 +50,7 @@ static size_t from_list(const asp_measurement *item, size_t count, asp_measureme
 static size_t from_grid(const asp_measured *measured, int isotropic, asp_measurement *out)
 {
     size_t n = 0;
-    for (int i = 0; i < 84; i += i < 26 ? 1 : 2) {
+    for (int i = 0; i < 84; i++) {
         double u = (i + 0.5) / 90, theta_h = u * u * 90 * DEGREE;
         for (int j = 2; j < 80; j += 5)
             for (size_t k = 0; k < PHIS; k++)

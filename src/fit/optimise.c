@@ -140,13 +140,19 @@ asp_status aspi_polish(aspi_search *search, aspi_point *at, const int *free_axes
         int info;
         aspi_point next = *at;
         aspi_problem_reweight(p, at, 1);
-        status = descend(search, &next, free_axes, 4 * rounds, &info, err);
+        status = descend(search, &next, free_axes, 2 * rounds, &info, err);
         if (status)
             return status;
         aspi_problem_colours(p, &next, 60);
         if (next.loss < at->loss)
             *at = next;
         search->reason = reason_of(info);
+        /* slopes of a valley whose colours are at their limits turn abruptly */
+        if (info == 5 && rounds > COARSE_ROUNDS) {
+            int flat;
+            status = aspi_simplex(search, at, free_axes, &flat, err);
+            search->reason = flat ? ASP_FIT_LOSS : ASP_FIT_EVALUATIONS;
+        }
     } else {
         int flat = 0;
         status = reweighted(search, at, free_axes, rounds, err);
