@@ -49,7 +49,7 @@ static inline const char *in_folder(const char *name)
     static int turn;
     if (!folder_[0]) {
         const char *base = getenv("TMPDIR");
-        snprintf(folder_, sizeof folder_, "%s/asperity-draw-XXXXXX", base && *base ? base : "/tmp");
+        snprintf(folder_, sizeof folder_, "%s/asperity-draw-XXXXXX", base && *base ? base : P_tmpdir);
         if (!mkdtemp(folder_)) {
             perror(folder_);
             exit(1);

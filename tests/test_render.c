@@ -256,8 +256,8 @@ static void test_studio(void)
     asp_environment studio = asp_environment_studio();
     light_view view;
     aspi_lights_prepare(&studio, &view.lights, NULL);
-    asp_preview preview = { .function = white, .width = 65, .height = 65, .samples = 2048, .zoom = 1 };
-    static const int at[][2] = { { 32, 32 }, { 15, 17 }, { 55, 30 }, { 32, 59 }, { 20, 10 }, { 45, 20 } };
+    asp_preview preview = { .function = white, .width = 33, .height = 33, .samples = 4096, .zoom = 1 };
+    static const int at[][2] = { { 16, 16 }, { 7, 8 }, { 27, 15 }, { 16, 29 }, { 10, 5 }, { 22, 10 } };
     asp_image image = render(&preview);
     double worst = 0, brightest = 0;
     for (int k = 0; k < 6; k++) {
@@ -269,9 +269,9 @@ static void test_studio(void)
         CHECK(fabs(shown / expected - 1) < 0.015, "studio at %d, %d: %g, quadrature %g", at[k][0], at[k][1],
               shown, expected);
     }
-    for (int i = 0; i < 65 * 65; i++) {
+    for (int i = 0; i < 33 * 33; i++) {
         asp_vec3 n;
-        if (normal_at(&image, 1, i % 65, i / 65, &n))
+        if (normal_at(&image, 1, i % 33, i / 33, &n))
             brightest = fmax(brightest, luminance((asp_rgb){ image.rgb[3 * i], image.rgb[3 * i + 1],
                                                              image.rgb[3 * i + 2] }));
     }
@@ -439,15 +439,15 @@ static void test_determinism(void)
 static void test_noise(void)
 {
     double error[3] = { 0 };
-    asp_preview preview = { .function = white, .width = 40, .height = 40, .zoom = 3, .samples = 4096 };
+    asp_preview preview = { .function = white, .width = 24, .height = 24, .zoom = 3, .samples = 4096 };
     asp_image exact = render(&preview);
     for (int k = 0; k < 3; k++) {
         preview.samples = 16 << 2 * k;
         preview.seed = 5 + (uint32_t)k;
         asp_image image = render(&preview);
-        for (int i = 0; i < 40 * 40 * 3; i++)
+        for (int i = 0; i < 24 * 24 * 3; i++)
             error[k] += pow(image.rgb[i] - exact.rgb[i], 2);
-        error[k] = sqrt(error[k] / (40 * 40 * 3));
+        error[k] = sqrt(error[k] / (24 * 24 * 3));
         asp_image_free(&image);
     }
     asp_image_free(&exact);
