@@ -13,7 +13,7 @@
 
 static void put_number(char *text, size_t size, double value)
 {
-    if (value == floor(value) && fabs(value) < 1e15)
+    if (value == floor(value) && fabs(value) < 1e16)
         snprintf(text, size, "%.0f", value);
     else
         snprintf(text, size, "%g", value);
