@@ -37,6 +37,8 @@ static int parse_models(const cmd_args *args, job *j)
         size_t length = strcspn(text, ",");
         snprintf(name, sizeof name, "%.*s", (int)length, text);
         text += length + (text[length] == ',');
+        if (!length)
+            continue;
         const asp_model *model = asp_find_model(NULL, name);
         if (!model)
             return cmd_unknown("--ndf: unknown distribution", name, names);
@@ -66,11 +68,15 @@ static int parse_loss(const cmd_args *args, job *j)
     return CMD_OK;
 }
 
-static int make_folder(const char *path)
+/* `made` (may be NULL) says whether it is new. */
+static int make_folder(const char *path, int *made)
 {
     struct stat about;
-    if (mkdir(path, 0777) == 0)
+    if (mkdir(path, 0777) == 0) {
+        if (made)
+            *made = 1;
         return CMD_OK;
+    }
     int why = errno;
     if (why == EEXIST && stat(path, &about) == 0 && S_ISDIR(about.st_mode))
         return CMD_OK;
@@ -177,7 +183,7 @@ static int write_report(const job *j, report *r, const char *folder)
     int status = text ? spheres(j, r) : cmd_failed("out of memory");
     if (!status) {
         report_html(r, &html);
-        status = html.broken ? cmd_failed("out of memory") : make_folder(folder);
+        status = html.broken ? cmd_failed("out of memory") : make_folder(folder, NULL);
     }
     if (!status)
         status = write_text(folder, "fit.json", text, strlen(text));
@@ -338,7 +344,7 @@ static int finish(job *j)
 static int all_of(const cmd_args *args, job *j)
 {
     size_t files = cmd_operand_count(args);
-    int status = CMD_OK, fabricate = cmd_given(args, "fabricate") > 0;
+    int status = CMD_OK, made = 0, fabricate = cmd_given(args, "fabricate") > 0;
     if (!files && !fabricate)
         return cmd_usage("fit: name a measurement, or give --fabricate");
     j->several = files + (size_t)fabricate > 1;
@@ -350,12 +356,17 @@ static int all_of(const cmd_args *args, job *j)
         if (access(cmd_operand(args, i), R_OK))
             status = cmd_failed("%s: %s", cmd_operand(args, i), strerror(errno));
     if (!status && j->folder)
-        status = make_folder(j->folder);
+        status = make_folder(j->folder, &made);
     if (!status && fabricate)
         status = fit_fabricated(j);
     for (size_t i = 0; i < files && !status; i++)
         status = fit_file(j, cmd_operand(args, i));
-    return status ? status : finish(j);
+    if (!status)
+        status = finish(j);
+    if (status && made && rmdir(j->folder)) {
+        /* not empty: what was finished before the failure stays */
+    }
+    return status;
 }
 
 static int run(const cmd_args *args)

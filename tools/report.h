@@ -55,6 +55,12 @@ size_t report_best(const report *r);
 const char *report_number(const asp_fit_parameter *p, const char *sign, char *buffer, size_t size);
 void report_table(const report *r, FILE *file);
 
+/* The names of the parameters, one for each row of a table; how many. */
+#define REPORT_ROWS 64
+size_t report_rows(const report *r, const char **out, size_t room);
+const asp_fit_parameter *report_find(const asp_fit_result *f, const char *name);   /* NULL: none */
+const char *report_mask_name(int mask);
+
 /* One object, NULL without memory. */
 json_t *report_json(const report *r);
 

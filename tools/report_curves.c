@@ -116,7 +116,7 @@ static int curves_make(curves *c, const report *r, size_t measured, size_t fitte
     return 1;
 }
 
-/* Draws and frees. The fitted curves lie on top of measured points, under a measured line. */
+/* Draws and frees. */
 static char *draw(curves *c, asp_chart *chart)
 {
     asp_error err;
@@ -303,7 +303,8 @@ char *report_profile(const report *r, double theta_d)
                         .x = { .label = "θ_{h} [deg]", .scale = ASP_SCALE_LOG },
                         .y = { .label = "f [1/sr]" } };
     log_limits(&c, &chart.y);
-    chart.x.decades = 4;
+    chart.x.low = r->info.scattered ? 0.2 : PROFILE_LOW;
+    chart.x.high = 90;
     return draw(&c, &chart);
 }
 

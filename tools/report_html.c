@@ -178,20 +178,12 @@ static void errors(const report *r, page *out)
     page_add(out, "</p>\n");
 }
 
-static const asp_fit_parameter *find(const asp_fit_result *f, const char *name)
-{
-    for (size_t k = 0; k < f->parameter_count; k++)
-        if (!strcmp(f->parameter[k].name, name))
-            return &f->parameter[k];
-    return NULL;
-}
-
 static void parameter_row(const report *r, const char *name, page *out)
 {
     char cell[64];
     page_put(out, "<tr><th>%s</th>", name);
     for (size_t i = 0; i < r->count; i++) {
-        const asp_fit_parameter *p = find(&r->result[i], name);
+        const asp_fit_parameter *p = report_find(&r->result[i], name);
         int weak = p && (p->at_bound || !p->determined);
         page_put(out, "<td class=\"n%s\">", weak ? " weak" : "");
         page_escaped(out, p ? report_number(p, "±", cell, sizeof cell) : "–");
@@ -209,25 +201,14 @@ static void truth_note(const report *r, page *out)
                   "beckmann α = %.4f.</p>\n", s->alpha, s->gamma, s->alpha_ggx, s->alpha_beckmann);
 }
 
-/* Alpha, then what only some models have, then what all share. */
 static void parameters(const report *r, page *out)
 {
-    static const char *const shared[] = { "eta", "diffuse_r", "diffuse_g", "diffuse_b", "specular_r",
-                                          "specular_g", "specular_b" };
+    const char *name[REPORT_ROWS];
+    size_t rows = report_rows(r, name, REPORT_ROWS);
     page_add(out, "<h2>Parameters</h2>\n<table>\n");
     model_names(r, out);
-    parameter_row(r, "alpha", out);
-    for (size_t i = 0; i < r->count; i++)
-        for (size_t k = 0; k < r->result[i].model->param_count; k++) {
-            const char *name = r->result[i].parameter[k + 1].name;
-            int before = !strcmp(name, "alpha");
-            for (size_t j = 0; j < i; j++)
-                before |= find(&r->result[j], name) != NULL;
-            if (!before)
-                parameter_row(r, name, out);
-        }
-    for (size_t k = 0; k < sizeof shared / sizeof *shared; k++)
-        parameter_row(r, shared[k], out);
+    for (size_t k = 0; k < rows; k++)
+        parameter_row(r, name[k], out);
     page_add(out, "</table>\n");
     truth_note(r, out);
     page_add(out, "<p class=\"note\">± is one standard deviation for independent errors; where a model "
@@ -281,9 +262,9 @@ void report_html(const report *r, page *out)
     charts(r, out);
     parameters(r, out);
     materials(r, out);
-    page_put(out, "<p class=\"note\">asperity %d.%d.%d, seed %llu, %d starts per distribution, masking "
-                  "%d, specular at most %g.</p>\n</body>\n</html>\n", ASP_VERSION_MAJOR,
-             ASP_VERSION_MINOR, ASP_VERSION_PATCH, (unsigned long long)r->seed, r->starts, r->mask,
+    page_put(out, "<p class=\"note\">asperity %d.%d.%d, seed %llu, %d starts per distribution, %s "
+                  "masking, specular at most %g.</p>\n</body>\n</html>\n", ASP_VERSION_MAJOR,
+             ASP_VERSION_MINOR, ASP_VERSION_PATCH, (unsigned long long)r->seed, r->starts, report_mask_name(r->mask),
              r->specular_limit);
 }
 

@@ -65,14 +65,14 @@ json_t *report_json(const report *r)
     json_t *results = json_array();
     for (size_t i = 0; i < r->count; i++)
         json_array_append_new(results, result(&r->result[i], i == r->best));
-    json_t *out = json_pack("{s:s, s:s, s:s, s:b, s:b, s:i, s:I, s:I, s:s, s:s, s:I, s:i, s:i, s:f}",
+    json_t *out = json_pack("{s:s, s:s, s:s, s:b, s:b, s:i, s:I, s:I, s:s, s:s, s:I, s:i, s:s, s:f}",
                             "name", r->title, "format", r->info.format, "description",
                             r->info.description, "isotropic", r->info.isotropic, "scattered",
                             r->info.scattered, "channels", r->info.channels, "samples",
                             (json_int_t)r->info.samples, "geometries", (json_int_t)r->geometries,
                             "loss", r->loss, "loss_definition",
                             asp_losses()[r->loss_index]->definition, "seed", (json_int_t)r->seed,
-                            "starts", r->starts, "mask", r->mask, "specular_limit",
+                            "starts", r->starts, "mask", report_mask_name(r->mask), "specular_limit",
                             r->specular_limit);
     if (out && r->made)
         json_object_set_new(out, "fabricated", fabricated(r->made, r->truth));

@@ -38,58 +38,75 @@ const char *report_number(const asp_fit_parameter *p, const char *sign, char *bu
     return buffer;
 }
 
+/* Green and blue repeat red where the file has one channel. */
+static int one_of_many(const char *name)
+{
+    const char *end = strrchr(name, '_');
+    return end && (!strcmp(end, "_g") || !strcmp(end, "_b"));
+}
+
+const char *report_mask_name(int mask)
+{
+    static const char *const name[2][3] = {
+        { "correlated", "uncorrelated", "v_cavity" },
+        { "correlated+wall", "uncorrelated+wall", "v_cavity+wall" }
+    };
+    return name[(mask & ASP_MASK_WALL) != 0][mask & 3];
+}
+
+const asp_fit_parameter *report_find(const asp_fit_result *f, const char *name)
+{
+    for (size_t k = 0; k < f->parameter_count; k++)
+        if (!strcmp(f->parameter[k].name, name))
+            return &f->parameter[k];
+    return NULL;
+}
+
 static void row_of(const report *r, const char *name, FILE *file)
 {
     char cell[64];
     fprintf(file, "  %-14s", name);
     for (size_t i = 0; i < r->count; i++) {
-        const asp_fit_result *f = &r->result[i];
-        const asp_fit_parameter *p = NULL;
-        for (size_t k = 0; k < f->parameter_count; k++)
-            if (!strcmp(f->parameter[k].name, name))
-                p = &f->parameter[k];
+        const asp_fit_parameter *p = report_find(&r->result[i], name);
         fprintf(file, " %-22s", p ? report_number(p, "+-", cell, sizeof cell) : "-");
     }
     fputc('\n', file);
 }
 
-/* Every parameter name once, in the order in which the results have them. */
-static void rows(const report *r, FILE *file)
+/* Alpha, then what only some models have, then what all share. */
+size_t report_rows(const report *r, const char **out, size_t room)
 {
-    const char *done[ASP_FIT_PARAMETERS * 4];
-    size_t n = 0, room = sizeof done / sizeof *done;
-    for (size_t k = 0; k < ASP_FIT_PARAMETERS; k++)
-        for (size_t i = 0; i < r->count; i++) {
-            const asp_fit_result *f = &r->result[i];
-            size_t known = 0;
-            /* shape numbers stand between alpha and eta: leave room for those of others */
-            if (k >= f->parameter_count)
-                continue;
-            while (known < n && strcmp(done[known], f->parameter[k].name))
-                known++;
-            if (known == n && n < room)
-                done[n++] = f->parameter[k].name;
+    static const char *const shared[] = { "eta", "diffuse_r", "diffuse_g", "diffuse_b", "specular_r",
+                                          "specular_g", "specular_b" };
+    size_t n = 0;
+    if (n < room)
+        out[n++] = "alpha";
+    for (size_t i = 0; i < r->count; i++)
+        for (size_t k = 0; k < r->result[i].model->param_count; k++) {
+            const char *name = r->result[i].parameter[k + 1].name;
+            int before = !strcmp(name, "alpha");
+            for (size_t j = 0; j < i; j++)
+                before |= report_find(&r->result[j], name) != NULL;
+            if (!before && n < room)
+                out[n++] = name;
         }
-    /* alpha, shapes, then what all share */
-    static const char *const last[] = { "eta", "diffuse_r", "diffuse_g", "diffuse_b", "specular_r",
-                                        "specular_g", "specular_b" };
-    for (size_t k = 0; k < n; k++) {
-        int shared = 0;
-        for (size_t i = 0; i < sizeof last / sizeof *last; i++)
-            shared |= !strcmp(done[k], last[i]);
-        if (!shared)
-            row_of(r, done[k], file);
-    }
-    for (size_t i = 0; i < sizeof last / sizeof *last; i++)
-        row_of(r, last[i], file);
+    for (size_t k = 0; k < sizeof shared / sizeof *shared; k++)
+        if (n < room && (r->info.channels != 1 || !one_of_many(shared[k])))
+            out[n++] = shared[k];
+    return n;
 }
 
 void report_table(const report *r, FILE *file)
 {
     const asp_loss *const *loss = asp_losses();
-    fprintf(file, "%s: %s, %s%s%zu geometries fitted by %s\n", r->file ? r->file : r->title,
-            r->info.format, r->info.description, r->info.description[0] ? ", " : "", r->geometries,
-            r->loss);
+    if (r->made)
+        fprintf(file, "fabricated: rays traced against an explicit surface whose facets have "
+                      "student_t slopes of alpha %.4f, gamma %.3f", r->truth->slopes.alpha,
+                r->truth->slopes.gamma);
+    else
+        fprintf(file, "%s: %s%s%s", r->file, r->info.format, r->info.description[0] ? ", " : "",
+                r->info.description);
+    fprintf(file, "\n  %zu geometries, fitted by %s\n", r->geometries, r->loss);
     fprintf(file, "  %-14s", "");
     for (size_t i = 0; i < r->count; i++)
         fprintf(file, " %-22s", r->result[i].model->name);
@@ -104,7 +121,10 @@ void report_table(const report *r, FILE *file)
         }
         fputc('\n', file);
     }
-    rows(r, file);
+    const char *name[REPORT_ROWS];
+    size_t rows = report_rows(r, name, REPORT_ROWS);
+    for (size_t k = 0; k < rows; k++)
+        row_of(r, name[k], file);
     for (size_t i = 0; i < r->count; i++)
         if (r->result[i].reason < 0)
             fprintf(file, "  %s: %s\n", r->result[i].model->name,
