@@ -125,7 +125,7 @@ typedef struct asp_surface_recipe {
     double gamma;         /* [1.6, infinity] */
 } asp_surface_recipe;
 
-/* seed 1, 1024 points, correlation 4, patch 8, alpha 0.25, gamma 3. */
+/* seed 1, 1024 points, correlation 4, patch 8, alpha 0.2, gamma 3. */
 asp_surface_recipe asp_surface_recipe_default(void);
 
 /* Makes an isotropic, periodic height field with dx = dy = 1. Same recipe, same heights.

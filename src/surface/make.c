@@ -17,8 +17,8 @@
 
 asp_surface_recipe asp_surface_recipe_default(void)
 {
-    return (asp_surface_recipe){ .seed = 1, .size = 1024, .correlation = 8, .patch = 4,
-                                 .alpha = 0.25, .gamma = 3 };
+    return (asp_surface_recipe){ .seed = 1, .size = 1024, .correlation = 4, .patch = 8,
+                                 .alpha = 0.2, .gamma = 3 };
 }
 
 static asp_status check(const asp_surface_recipe *r, asp_error *err)

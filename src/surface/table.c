@@ -104,7 +104,7 @@ static const aspi_cell *column_cells(const aspi_counts *counts, int j, int k)
 }
 
 /* Where the bins of a row (all columns of one theta_d) end: ends[i] says that one ends with fine
- * cell i. Equal counts where there is plenty, a quarter of what is still to come in the tail, so
+ * cell i. Equal counts where there is plenty, an eighth of what is still to come in the tail, so
  * that f changes little within a bin. The columns of a row share their ends because a column that
  * ended a bin when its own count is reached would do so after lucky cells, and read too high. */
 static void row_ends(const aspi_counts *counts, int j, int ends[ASPI_CELLS_H])
@@ -119,7 +119,7 @@ static void row_ends(const aspi_counts *counts, int j, int ends[ASPI_CELLS_H])
     for (int i = 0; i < ASPI_CELLS_H; ++i) {
         double root = (i + 1.0) / ASPI_CELLS_H, theta = 0.5 * ASPI_PI * root * root;
         held += cells[i];
-        ends[i] = held >= fmax(FEWEST, fmin(plenty, left / 4))
+        ends[i] = held >= fmax(FEWEST, fmin(plenty, left / 8))
                || (theta - from > WIDEST && held >= FEWEST / 4);
         if (ends[i]) {
             left -= held;
