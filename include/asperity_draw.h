@@ -258,7 +258,7 @@ typedef struct asp_preview {
     asp_brdf_function  *function;
     const void         *context;
     /* A material that scatters about where the function does, say the one fitted to it; it sets the
-     * noise, never the mean. NULL: a built-in mix of a cosine and four lobes from wide to narrow.
+     * noise, never the mean. NULL: a built-in mix of a cosine and five lobes from wide to narrow.
      * Beside .material it replaces that one's own sampler: for one that is slow to sample, a quick one
      * of the same roughness. */
     const asp_material *proposal;

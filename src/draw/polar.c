@@ -47,7 +47,7 @@ static void angle_label(aspi_text *text, const disc *d, double degrees, const ch
 {
     char label[32];
     aspi_text number = { 0 };
-    aspi_text_number(&number, degrees, degrees == rint(degrees) ? 0 : 1, "\xe2\x88\x92");
+    aspi_text_number(&number, degrees, fabs(degrees - rint(degrees)) < 0.05 ? 0 : 1, "\xe2\x88\x92");
     snprintf(label, sizeof label, "%s\xc2\xb0", number.bytes && !number.failed ? number.bytes : "");
     aspi_text_free(&number);
     aspi_point p = at(d, degrees * PI / 180, d->radius + 9);

@@ -17,14 +17,14 @@ static asp_vec3 get(const aspi_directions *d, size_t i)
 
 /* ------------------------------------------------------------------ a mixture for any function
  *
- * A cosine lobe, so that no direction is forgotten, and either the proposal or four lobes of facets
- * with D proportional to cos^n (Blinn 1977), whose widths cover measured lobes from 1 degree up. */
+ * A cosine lobe, so that no direction is forgotten, and either the proposal or five lobes of facets
+ * with D proportional to cos^n (Blinn 1977), whose widths cover measured lobes from mirror-like paint up. */
 
-#define LOBES 4
-static const double exponents[LOBES] = { 6, 60, 550, 5000 };
+#define LOBES 5
+static const double exponents[LOBES] = { 6, 60, 550, 5000, 50000 };
 
 #define COSINE_SHARE_PROPOSAL 0.15
-#define COSINE_SHARE_LOBES 0.28         /* 0.18 for each lobe */
+#define COSINE_SHARE_LOBES 0.28         /* 0.144 for each lobe */
 
 static double cosine_share(const aspi_scatter *scatter)
 {
