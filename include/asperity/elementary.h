@@ -24,6 +24,7 @@
 #define aspi_exp ASP_NAME(aspi_exp)
 #define aspi_exp_series ASP_NAME(aspi_exp_series)
 #define aspi_exp_less ASP_NAME(aspi_exp_less)
+#define aspi_exp_both ASP_NAME(aspi_exp_both)
 #define aspi_expm1 ASP_NAME(aspi_expm1)
 #define aspi_log_rest ASP_NAME(aspi_log_rest)
 #define aspi_log_parts ASP_NAME(aspi_log_parts)
@@ -166,8 +167,9 @@ ASP_FN asp_real aspi_exp_less(asp_real x, asp_real low)
 
 ASP_FN asp_real aspi_exp(asp_real x) { return aspi_exp_less(x, R(0.0)); }
 
-/* e^x - 1, accurate near 0. -1 below ASP_EXP_LOW; above ASP_EXP_HIGH as aspi_exp. */
-ASP_FN asp_real aspi_expm1(asp_real x)
+/* e^x as .x and e^x - 1 as .y, each accurate where it is small. 0 and -1 below ASP_EXP_LOW; above
+ * ASP_EXP_HIGH as aspi_exp. */
+ASP_FN asp_v2 aspi_exp_both(asp_real x)
 {
     asp_real y = x < R(ASP_EXP_LOW) ? R(ASP_EXP_LOW) : x;
     asp_real z = y > R(ASP_EXP_HIGH) ? R(ASP_EXP_HIGH) : y;
@@ -176,8 +178,14 @@ ASP_FN asp_real aspi_expm1(asp_real x)
     asp_real r = (z - k * R(ASP_LN2_HIGH)) - k * R(ASP_LN2_LOW);
     asp_real scale = aspi_from_bits((asp_bits)((aspi_to_bits(shifted) + (asp_bits)ASP_EXPONENT_BIAS)
                                     << ASP_FRACTION_BITS));
-    return (scale - R(1.0)) + scale * (r + (r * r) * aspi_exp_series(r));
+    asp_real e = scale * (r + (r * r) * aspi_exp_series(r));
+    asp_v2 out;
+    out.x = x < R(ASP_EXP_LOW) ? R(0.0) : scale + e;
+    out.y = (scale - R(1.0)) + e;
+    return out;
 }
+
+ASP_FN asp_real aspi_expm1(asp_real x) { return aspi_exp_both(x).y; }
 
 /* f - log(1 + f) for 1 + f within [sqrt(1/2), sqrt(2)). In float64 by the series of 2 atanh(s) =
  * log(1 + f), s = f/(2 + f), |s| <= 0.1716: f - 2 atanh(s) = s (f - s^2 p). In float32 a polynomial,

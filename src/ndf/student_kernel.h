@@ -140,9 +140,9 @@ ASP_FN asp_v2 student_point(asp_real q, asp_real n, asp_real invn)
     out.x = aspi_sqrt(q);
     out.y = R(1.0);
 #else
-    asp_real m = aspi_expm1(R(-0.5) * q * invn);
-    out.x = aspi_sqrt(n * (-m * (R(2.0) + m)));
-    out.y = R(1.0) + m;
+    asp_v2 w = aspi_exp_both(R(-0.5) * q * invn);
+    out.x = aspi_sqrt(n * (-w.y * (R(1.0) + w.x)));
+    out.y = w.x;
 #endif
     return out;
 }
@@ -205,7 +205,7 @@ ASP_FN asp_real student_step(const asp_shape *k, asp_real r_now, asp_real c, asp
                    + ss * (k->table[STUDENT_M0] * e);
     asp_real y = aspi_max(turn * value + shift, R(1e-6) * t);
     /* y'/y, and y''/y' less the part that the logarithm or the root straightens */
-    asp_real y1 = R(-2.0) * turn * k->table[STUDENT_T0] * ratio * (e * slope) / y;
+    asp_real y1 = -turn * (R(2.0) * k->table[STUDENT_T0] * ratio * (e * slope) / y + R(1e-20));
     asp_real y2 = bend + ss * ratio / slope - (by_log > R(0.0) ? y1 : R(0.5) * y1);
     asp_real x = t / y;
     asp_real g = by_log > R(0.0) ? -aspi_log(x) : R(2.0) * (R(1.0) - aspi_sqrt(x));
@@ -239,10 +239,11 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
     asp_real g = aspi_sqrt(s2 + c2 * invn);
 #endif
     asp_real ag = R(STUDENT_A) * g, d = ag / (aspi_abs(c) + ag);
-    asp_real far = g * m0 * aspi_exp(-q_view) * (d * d) * student_p(k, d);
+    asp_real d2p = d * d * student_p(k, d);
+    asp_real far = g * m0 * aspi_exp(-q_view) * d2p;
     asp_real r_view = aspi_sqrt(q_view);
     /* the case */
-    asp_real up = aspi_max(c, R(0.0)), sigma = up + far, sm = s * m0;
+    asp_real up = aspi_max(c, R(0.0)), sigma = aspi_max(up + far, tiny), sm = s * m0;
     asp_real u = aspi_max(u1, least), rest = aspi_max(R(1.0) - u, least);
     asp_real area = u * sigma;
     asp_real at_left = R(0.5) * up + sm, at_right = aspi_max(sigma - at_left, tiny);
@@ -277,12 +278,16 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
                                             : aspi_max(R(1.0) - part, tiny));
     asp_real q2 = aspi_max((l + l2) / beta, R(0.0)) + (below > R(0.0) ? q_view : R(0.0));
     asp_real r2 = aspi_sqrt(q2);
+    /* right and near: distance from r_view where y is its leading term (r - r_view)^2; closer to it
+     * y would be lost in rounding */
+    asp_real gap = R(0.8) * aspi_sqrt(rest * sigma * d2p * c2
+                                      / (beta * aspi_max(far * q_view * (g * g), tiny)));
     asp_v2 p, across;
     asp_v3 m;
     asp_real low = below > R(0.0) ? r_view : R(0.0), high = right > R(0.0) ? r_view : R(1e18);
     asp_real along, over, ax, ay;
-    r = below > R(0.0) ? r2 : aspi_max(r, r2);
-    r = right > R(0.0) ? r_right : r;
+    r = aspi_max(below > R(0.0) ? r_view + (near > R(0.0) ? gap : R(0.0)) : r, r2);
+    r = right > R(0.0) ? aspi_min(r_right, r_view - aspi_min(gap, R(0.5) * r_view)) : r;
 #define STUDENT_REFINE(by_log) \
     r = student_step(k, r, c, s, side, turn, shift, target, by_log); \
     r = aspi_min(aspi_max(r, low), high);
