@@ -114,10 +114,11 @@ static void run_reference(const void *context)
 
 /* ------------------------------------------------------------------ clock and counter */
 
+/* Time of this thread on its processor: what others do meanwhile does not count. */
 static double now_ns(void)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
 }
 

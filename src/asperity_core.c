@@ -1,7 +1,13 @@
 /* asperity_core.c - the whole core as one translation unit: cc -O2 -Iinclude -Isrc -c src/asperity_core.c
  *
- * Written by scripts/single-file.sh (make docs). Add -fno-math-errno -fno-trapping-math
- * -ffp-contract=off -O3 to get the speed and the bits of the library. */
+ * Written by scripts/single-file.sh (make docs). Whatever the command line says, products and sums are
+ * rounded one by one, so that the bits are the library's; -O3 gives its speed. */
+#if defined(__clang__)
+#pragma STDC FP_CONTRACT OFF
+#elif defined(__GNUC__)
+#pragma GCC optimize("fp-contract=off", "no-math-errno", "no-trapping-math")
+#endif
+
 #include "core/error.c"
 #undef ASP_PRECISION
 #include "core/facets.c"
@@ -13,6 +19,8 @@
 #include "core/map.c"
 #undef ASP_PRECISION
 #include "core/material.c"
+#undef ASP_PRECISION
+#include "core/material_batch.c"
 #undef ASP_PRECISION
 #include "core/metals.c"
 #undef ASP_PRECISION

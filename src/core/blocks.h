@@ -15,6 +15,13 @@
 #define aspi_loop_view ASP_NAME(aspi_loop_view)
 #define aspi_loop_view_vectors ASP_NAME(aspi_loop_view_vectors)
 #define aspi_loop_back ASP_NAME(aspi_loop_back)
+#define ASPI_FROM ASP_NAME(aspi_from)
+#define ASPI_TO ASP_NAME(aspi_to)
+#define ASPI_TO_RGB ASP_NAME(aspi_to_rgb)
+/* A batch block by block; a block's inputs are read before its outputs are written. */
+#define ASPI_FOR_BLOCKS(i, size, n) \
+    for (i = 0; i < (n) && (size = (n) - i < ASPI_BLOCK ? (n) - i : ASPI_BLOCK, 1); \
+         i += ASPI_BLOCK)
 #define aspi_block_density ASP_NAME(aspi_block_density)
 #define aspi_block_sigma ASP_NAME(aspi_block_sigma)
 #define aspi_block_visible ASP_NAME(aspi_block_visible)
@@ -39,6 +46,39 @@
 #define asp_cv3s asp_cvec3sf
 #define asp_c3s asp_rgbsf
 #endif
+
+#if (ASP_PRECISION == 64 && !defined(ASPI_BLOCKS_64)) || \
+    (ASP_PRECISION == 32 && !defined(ASPI_BLOCKS_32))
+#if ASP_PRECISION == 64
+#define ASPI_BLOCKS_64
+#else
+#define ASPI_BLOCKS_32
+#endif
+
+/* The arrays from element i on. */
+ASP_FN asp_cv3s ASPI_FROM(asp_cv3s a, size_t i)
+{
+    a.x += i;
+    a.y += i;
+    a.z += i;
+    return a;
+}
+
+ASP_FN asp_v3s ASPI_TO(asp_v3s a, size_t i)
+{
+    a.x += i;
+    a.y += i;
+    a.z += i;
+    return a;
+}
+
+ASP_FN asp_c3s ASPI_TO_RGB(asp_c3s a, size_t i)
+{
+    a.r += i;
+    a.g += i;
+    a.b += i;
+    return a;
+}
 
 #define IN const asp_real *ASP_RESTRICT
 #define OUT asp_real *ASP_RESTRICT
@@ -157,3 +197,4 @@ ASP_FN void aspi_block_visible(const asp_shape *k, size_t n, asp_cv3s wi, const 
 #endif
 #undef IN
 #undef OUT
+#endif
