@@ -83,14 +83,6 @@ ASP_FN asp_c3s ASPI_TO_RGB(asp_c3s a, size_t i)
 #define IN const asp_real *ASP_RESTRICT
 #define OUT asp_real *ASP_RESTRICT
 
-#if (ASP_PRECISION == 64 && !defined(ASPI_BLOCKS_64)) || \
-    (ASP_PRECISION == 32 && !defined(ASPI_BLOCKS_32))
-#if ASP_PRECISION == 64
-#define ASPI_BLOCKS_64
-#else
-#define ASPI_BLOCKS_32
-#endif
-
 ASP_FN void aspi_loop_density_in(const asp_shape *k, size_t n, IN x, IN y, IN z, OUT r2,
                                  OUT z2, OUT mz)
 {
@@ -194,7 +186,6 @@ ASP_FN void aspi_block_visible(const asp_shape *k, size_t n, asp_cv3s wi, const 
     aspi_loop_back(k, n, x, y, z, m.x, m.y, m.z);
 }
 
-#endif
 #undef IN
 #undef OUT
 #endif

@@ -75,6 +75,9 @@ ASP_FN asp_real joint_masking(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_v3 m
     asp_real c_i = aspi_dot(wi, m), c_o = aspi_dot(wo, m);
     asp_real g = wi.z * wo.z * aspi_joint(wi.z, wo.z, si, so, m.z, c_i, c_o, mask);
     asp_real dark = aspi_min(aspi_min(wi.z, wo.z), aspi_min(aspi_min(c_i, c_o), m.z));
+    /* the V-cavity's selections would lose a NaN */
+    asp_real sum = c_i + c_o;
+    g = sum == sum ? g : sum;
     return dark <= R(0.0) ? R(0.0) : g;
 }
 
@@ -317,33 +320,11 @@ ASP_CLONES static void block_normal(const asp_shape *k, size_t n, const asp_real
 
 /* ---- batches: block by block; a block's inputs are read before its outputs are written */
 
-#define FOR_BLOCKS(i, size, n) \
-    for (i = 0; i < (n) && (size = (n) - i < ASPI_BLOCK ? (n) - i : ASPI_BLOCK, 1); \
-         i += ASPI_BLOCK)
-
-static asp_cv3s ASP_NAME(from)(asp_cv3s a, size_t i)
-{
-    a.x += i;
-    a.y += i;
-    a.z += i;
-    return a;
-}
-
-static asp_v3s ASP_NAME(to)(asp_v3s a, size_t i)
-{
-    a.x += i;
-    a.y += i;
-    a.z += i;
-    return a;
-}
-#define FROM ASP_NAME(from)
-#define TO ASP_NAME(to)
-
 void ASPI_CALL(asp_D_n)(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
 {
     size_t i, size;
-    FOR_BLOCKS(i, size, n)
-        block_density(k, size, FROM(m, i), out + i);
+    ASPI_FOR_BLOCKS(i, size, n)
+        block_density(k, size, ASPI_FROM(m, i), out + i);
 }
 
 void ASPI_CALL(asp_P22_n)(const asp_shape *k, size_t n, const asp_real *p_x, const asp_real *p_y,
@@ -351,7 +332,7 @@ void ASPI_CALL(asp_P22_n)(const asp_shape *k, size_t n, const asp_real *p_x, con
 {
     asp_real r2[ASPI_BLOCK], z2[ASPI_BLOCK], d[ASPI_BLOCK];
     size_t i, size;
-    FOR_BLOCKS(i, size, n) {
+    ASPI_FOR_BLOCKS(i, size, n) {
         loop_slopes(k, size, p_x + i, p_y + i, r2, z2);
         ASPI_OPS(k).density_n(k, size, r2, z2, d);
         loop_scale(size, k->inv_det, d, out + i);
@@ -361,25 +342,25 @@ void ASPI_CALL(asp_P22_n)(const asp_shape *k, size_t n, const asp_real *p_x, con
 void ASPI_CALL(asp_sigma_n)(const asp_shape *k, size_t n, asp_cv3s w, asp_real *out)
 {
     size_t i, size;
-    FOR_BLOCKS(i, size, n)
-        block_sigma(k, size, FROM(w, i), out + i);
+    ASPI_FOR_BLOCKS(i, size, n)
+        block_sigma(k, size, ASPI_FROM(w, i), out + i);
 }
 
 void ASPI_CALL(asp_G1_n)(const asp_shape *k, size_t n, asp_cv3s w, int mask, asp_real *out)
 {
     asp_real sigma[ASPI_BLOCK];
     size_t i, size;
-    FOR_BLOCKS(i, size, n) {
-        block_sigma(k, size, FROM(w, i), sigma);
-        loop_masking(k, size, mask, FROM(w, i), sigma, out + i);
+    ASPI_FOR_BLOCKS(i, size, n) {
+        block_sigma(k, size, ASPI_FROM(w, i), sigma);
+        loop_masking(k, size, mask, ASPI_FROM(w, i), sigma, out + i);
     }
 }
 
 void ASPI_CALL(asp_lambda_n)(const asp_shape *k, size_t n, asp_cv3s w, int mask, asp_real *out)
 {
     size_t i, size;
-    FOR_BLOCKS(i, size, n)
-        block_lambda(k, size, FROM(w, i), mask, out + i);
+    ASPI_FOR_BLOCKS(i, size, n)
+        block_lambda(k, size, ASPI_FROM(w, i), mask, out + i);
 }
 
 void ASPI_CALL(asp_G2_n)(const asp_shape *k, size_t n, asp_cv3s wi, asp_cv3s wo, asp_cv3s m,
@@ -387,10 +368,10 @@ void ASPI_CALL(asp_G2_n)(const asp_shape *k, size_t n, asp_cv3s wi, asp_cv3s wo,
 {
     asp_real sigma_i[ASPI_BLOCK], sigma_o[ASPI_BLOCK];
     size_t i, size;
-    FOR_BLOCKS(i, size, n) {
-        block_sigma(k, size, FROM(wi, i), sigma_i);
-        block_sigma(k, size, FROM(wo, i), sigma_o);
-        loop_joint(k, size, mask, FROM(wi, i), FROM(wo, i), FROM(m, i), sigma_i, sigma_o,
+    ASPI_FOR_BLOCKS(i, size, n) {
+        block_sigma(k, size, ASPI_FROM(wi, i), sigma_i);
+        block_sigma(k, size, ASPI_FROM(wo, i), sigma_o);
+        loop_joint(k, size, mask, ASPI_FROM(wi, i), ASPI_FROM(wo, i), ASPI_FROM(m, i), sigma_i, sigma_o,
                    out + i);
     }
 }
@@ -399,24 +380,24 @@ void ASPI_CALL(asp_sample_normal_n)(const asp_shape *k, size_t n, const asp_real
                                     const asp_real *u2, asp_v3s m)
 {
     size_t i, size;
-    FOR_BLOCKS(i, size, n)
-        block_normal(k, size, u1 + i, u2 + i, TO(m, i));
+    ASPI_FOR_BLOCKS(i, size, n)
+        block_normal(k, size, u1 + i, u2 + i, ASPI_TO(m, i));
 }
 
 void ASPI_CALL(asp_sample_visible_n)(const asp_shape *k, size_t n, asp_cv3s wi, const asp_real *u1,
                                      const asp_real *u2, asp_v3s m)
 {
     size_t i, size;
-    FOR_BLOCKS(i, size, n)
-        block_visible(k, size, FROM(wi, i), u1 + i, u2 + i, TO(m, i));
+    ASPI_FOR_BLOCKS(i, size, n)
+        block_visible(k, size, ASPI_FROM(wi, i), u1 + i, u2 + i, ASPI_TO(m, i));
 }
 
 void ASPI_CALL(asp_pdf_normal_n)(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
 {
     asp_real d[ASPI_BLOCK];
     size_t i, size;
-    FOR_BLOCKS(i, size, n) {
-        block_density(k, size, FROM(m, i), d);
+    ASPI_FOR_BLOCKS(i, size, n) {
+        block_density(k, size, ASPI_FROM(m, i), d);
         loop_times(size, d, m.z + i, out + i);
     }
 }
@@ -426,16 +407,13 @@ void ASPI_CALL(asp_pdf_visible_n)(const asp_shape *k, size_t n, asp_cv3s wi, asp
 {
     asp_real d[ASPI_BLOCK], sigma[ASPI_BLOCK];
     size_t i, size;
-    FOR_BLOCKS(i, size, n) {
-        block_density(k, size, FROM(m, i), d);
-        block_sigma(k, size, FROM(wi, i), sigma);
-        loop_visible_density(size, FROM(wi, i), FROM(m, i), d, sigma, out + i);
+    ASPI_FOR_BLOCKS(i, size, n) {
+        block_density(k, size, ASPI_FROM(m, i), d);
+        block_sigma(k, size, ASPI_FROM(wi, i), sigma);
+        loop_visible_density(size, ASPI_FROM(wi, i), ASPI_FROM(m, i), d, sigma, out + i);
     }
 }
 
 #undef IN
 #undef OUT
-#undef FROM
-#undef TO
-#undef FOR_BLOCKS
 #endif

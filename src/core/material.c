@@ -1,9 +1,6 @@
-/* material.c - eval, pdf and sample of reflecting materials: asperity.h sections 7 to 9
+/* material.c - eval, pdf and sample of reflecting materials, one by one: asperity.h sections 7 and 9
  *
- * Read three times like facets.c. The half vector m of wi and wo gives D(m), the two views give
- * sigma, and the scattering model makes f of them:
- *     f = value(F(wi.m), D J / 4),  J = G2 / (cos_i cos_o)
- *     pdf = p D / (4 sigma_i) + (1 - p) cos_o / pi,  p = 1 unless the model is mixed. */
+ * Read three times like facets.c; the formulas are in reflection.h. */
 #ifndef ASP_PRECISION
 #include "core/bsdf.h"
 
@@ -15,18 +12,12 @@
 #undef ASP_PRECISION
 
 #else
-#include "asperity/fresnel.h"
 #include "core/blocks.h"
 #include "core/bsdf_number.h"
-
+#include "core/reflection.h"
 
 #ifndef ASPI_MATERIAL_NAMES
 #define ASPI_MATERIAL_NAMES
-#define half_vector ASP_NAME(half_vector)
-#define cosine_lobe ASP_NAME(cosine_lobe)
-#define facet_part ASP_NAME(facet_part)
-#define lobe_density ASP_NAME(lobe_density)
-#define mixed_density ASP_NAME(mixed_density)
 #define fresnel_of ASP_NAME(fresnel_of)
 #define value_of ASP_NAME(value_of)
 #define share_of ASP_NAME(share_of)
@@ -35,78 +26,8 @@
 #define sigma_of ASP_NAME(sigma_of)
 #define sample_pure ASP_NAME(sample_pure)
 #define sample_mixed ASP_NAME(sample_mixed)
-#define block_fresnel ASP_NAME(block_fresnel)
-#define block_share ASP_NAME(block_share)
-#define block_eval ASP_NAME(block_eval)
-#define block_pdf ASP_NAME(block_pdf)
-#define block_sample_pure ASP_NAME(block_sample_pure)
-#define block_sample_mixed ASP_NAME(block_sample_mixed)
-#define loop_half ASP_NAME(loop_half)
-#define loop_reflect ASP_NAME(loop_reflect)
-#define loop_parts ASP_NAME(loop_parts)
-#define loop_weights ASP_NAME(loop_weights)
-#define loop_lobe_density ASP_NAME(loop_lobe_density)
-#define loop_mixed_density ASP_NAME(loop_mixed_density)
-#define loop_choose ASP_NAME(loop_choose)
-#define loop_mixed_direction ASP_NAME(loop_mixed_direction)
-#define loop_mixed_parts ASP_NAME(loop_mixed_parts)
-#define loop_one ASP_NAME(loop_one)
-#define loop_conductor ASP_NAME(loop_conductor)
-#define loop_f82 ASP_NAME(loop_f82)
-#define loop_dielectric ASP_NAME(loop_dielectric)
 #define asp_sampled ASPI_CALL(asp_bsdf_sample)
-/* A model's formulas in this precision. */
-#define ASPI_MODEL_CALL ASPI_CALL
 #endif
-
-#define IN const asp_real *ASP_RESTRICT
-#define OUT asp_real *ASP_RESTRICT
-
-/* ---- formulas */
-
-ASP_FN asp_v3 half_vector(asp_v3 wi, asp_v3 wo)
-{
-    wi.x = wi.x + wo.x;
-    wi.y = wi.y + wo.y;
-    wi.z = wi.z + wo.z;
-    return aspi_normalize(wi);
-}
-
-/* A direction with density cos / pi. */
-ASP_FN asp_v3 cosine_lobe(asp_real u1, asp_real u2)
-{
-    asp_v2 t = aspi_sincos2pi(u2);
-    asp_real r = aspi_sqrt(u1);
-    asp_v3 w;
-    w.x = r * t.x;
-    w.y = r * t.y;
-    w.z = aspi_sqrt(R(1.0) - u1);
-    return w;
-}
-
-/* `scale` J, 0 where a direction is below the horizon; scale is D/4 for f, sigma_i for a weight. */
-ASP_FN asp_real facet_part(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c,
-                           asp_real sigma_i, asp_real sigma_o, asp_real scale, int mask)
-{
-    asp_real si = aspi_masked(k, wi, sigma_i, mask), so = aspi_masked(k, wo, sigma_o, mask);
-    asp_real x = aspi_finite(scale * aspi_joint(wi.z, wo.z, si, so, mz, c, c, mask));
-    asp_real dark = aspi_min(aspi_min(wi.z, wo.z), aspi_min(c, mz));
-    return dark <= R(0.0) ? R(0.0) : x;
-}
-
-/* Visible normals through reflection: D / (4 sigma_i). */
-ASP_FN asp_real lobe_density(asp_real ci, asp_real D, asp_real sigma_i)
-{
-    asp_real p = aspi_finite(R(0.25) * D / (sigma_i < ASP_SMALLEST ? ASP_SMALLEST : sigma_i));
-    return ci <= R(0.0) ? R(0.0) : p;
-}
-
-ASP_FN asp_real mixed_density(asp_real ci, asp_real co, asp_real lobe, asp_real share)
-{
-    asp_real up = co < R(0.0) ? R(0.0) : co;
-    asp_real p = share * lobe + (R(1.0) - share) * (up * R(1.0 / ASP_PI));
-    return ci <= R(0.0) ? R(0.0) : p;
-}
 
 /* Numbers go by pointer: small structs of floats stall in the usual calling convention. */
 ASP_FN void fresnel_of(const asp_mat *mat, asp_real c, asp_real F[3])
@@ -135,7 +56,7 @@ ASP_FN void value_of(const asp_mat *mat, asp_real c, asp_real x, asp_real y, asp
 {
     asp_real F[3];
     fresnel_of(mat, c, F);
-    mat->model->ASPI_MODEL_CALL(value)(mat, F[0], F[1], F[2], x, y, out);
+    mat->model->ASPI_CALL(value)(mat, F[0], F[1], F[2], x, y, out);
 }
 
 /* ---- single calls */
@@ -159,17 +80,17 @@ static asp_real share_of(const asp_mat *mat, asp_real ci)
     if (!mat->model->mixed)
         return R(1.0);
     fresnel_of(mat, ci, F);
-    return mat->model->ASPI_MODEL_CALL(share)(mat, F);
+    return mat->model->ASPI_CALL(share)(mat, F);
 }
 
 /* f times by, where `by` is 1 or a cosine. */
 ASP_FN asp_c3 eval_scaled(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real by)
 {
     const asp_shape *k = &mat->ndf;
-    asp_v3 m = half_vector(wi, wo);
+    asp_v3 m = aspi_half_vector(wi, wo);
     asp_real c = aspi_dot(wi, m);
     asp_real D = density_of(k, m);
-    asp_real x = facet_part(k, wi, wo, m.z, c, sigma_of(k, wi),
+    asp_real x = aspi_facet_part(k, wi, wo, m.z, c, sigma_of(k, wi),
                             sigma_of(k, wo), R(0.25) * D, mat->mask);
     asp_real y = aspi_min(wi.z, wo.z) <= R(0.0) ? R(0.0) : by;
     asp_c3 out;
@@ -189,10 +110,10 @@ asp_c3 ASPI_CALL(asp_eval_cos)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 
 asp_real ASPI_CALL(asp_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 {
-    asp_v3 m = half_vector(wi, wo);
-    asp_real lobe = lobe_density(wi.z, density_of(&mat->ndf, m),
+    asp_v3 m = aspi_half_vector(wi, wo);
+    asp_real lobe = aspi_lobe_density(wi.z, density_of(&mat->ndf, m),
                                  sigma_of(&mat->ndf, wi));
-    return mat->model->mixed ? mixed_density(wi.z, wo.z, lobe, share_of(mat, wi.z)) : lobe;
+    return mat->model->mixed ? aspi_mixed_density(wi.z, wo.z, lobe, share_of(mat, wi.z)) : lobe;
 }
 
 /* Visible normals only: D cancels in the weight, which is F J sigma_i cos_o. */
@@ -205,8 +126,8 @@ ASP_FN void sample_pure(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2,
     out->wo.x = s.wo_x;
     out->wo.y = s.wo_y;
     out->wo.z = s.wo_z;
-    out->pdf = lobe_density(wi.z, s.density, s.sigma_i);
-    x = s.wo_z * facet_part(k, wi, out->wo, s.m_z, s.cosine, s.sigma_i, s.sigma_o, s.sigma_i,
+    out->pdf = aspi_lobe_density(wi.z, s.density, s.sigma_i);
+    x = s.wo_z * aspi_facet_part(k, wi, out->wo, s.m_z, s.cosine, s.sigma_i, s.sigma_o, s.sigma_i,
                             mat->mask);
     value_of(mat, s.cosine, x, x, &out->weight);
 }
@@ -220,14 +141,14 @@ static void sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2
     int facet = u1 < share;
     u1 = facet ? u1 / share : (u1 - share) / (R(1.0) - share);
     m = ASPI_CALL(asp_sample_visible)(k, wi, u1, u2);
-    out->wo = facet ? aspi_reflect(wi, m) : cosine_lobe(u1, u2);
-    m = half_vector(wi, out->wo);
+    out->wo = facet ? aspi_reflect(wi, m) : aspi_cosine_lobe(u1, u2);
+    m = aspi_half_vector(wi, out->wo);
     c = aspi_dot(wi, m);
     D = density_of(k, m);
-    out->pdf = mixed_density(wi.z, out->wo.z, lobe_density(wi.z, D, sigma_i), share);
+    out->pdf = aspi_mixed_density(wi.z, out->wo.z, aspi_lobe_density(wi.z, D, sigma_i), share);
     y = aspi_min(wi.z, out->wo.z) <= R(0.0) || out->pdf <= R(0.0) ? R(0.0) : out->wo.z / out->pdf;
     scale = out->pdf <= R(0.0) ? R(0.0) : R(0.25) * D / out->pdf;
-    x = out->wo.z * facet_part(k, wi, out->wo, m.z, c, sigma_i, sigma_of(k, out->wo), scale,
+    x = out->wo.z * aspi_facet_part(k, wi, out->wo, m.z, c, sigma_i, sigma_of(k, out->wo), scale,
                               mat->mask);
     value_of(mat, c, x, y, &out->weight);
 }
@@ -241,409 +162,4 @@ asp_sampled ASPI_CALL(asp_sample)(const asp_mat *mat, asp_v3 wi, asp_real u1, as
         sample_pure(mat, wi, u1, u2, &out);
     return out;
 }
-
-/* ---- loops */
-
-ASP_FN void loop_half(size_t n, IN ix, IN iy, IN iz, IN ox, IN oy, IN oz, OUT mx, OUT my,
-                      OUT mz, OUT c)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_v3 wi, wo, m;
-        wi.x = ix[i];
-        wi.y = iy[i];
-        wi.z = iz[i];
-        wo.x = ox[i];
-        wo.y = oy[i];
-        wo.z = oz[i];
-        m = half_vector(wi, wo);
-        mx[i] = m.x;
-        my[i] = m.y;
-        mz[i] = m.z;
-        c[i] = aspi_dot(wi, m);
-    }
-}
-
-ASP_FN void loop_reflect(size_t n, IN ix, IN iy, IN iz, IN mx, IN my, IN mz, OUT ox,
-                         OUT oy, OUT oz, OUT c)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_v3 wi, m, wo;
-        wi.x = ix[i];
-        wi.y = iy[i];
-        wi.z = iz[i];
-        m.x = mx[i];
-        m.y = my[i];
-        m.z = mz[i];
-        wo = aspi_reflect(wi, m);
-        ox[i] = wo.x;
-        oy[i] = wo.y;
-        oz[i] = wo.z;
-        c[i] = aspi_dot(wi, m);
-    }
-}
-
-/* facet_part with scale D/4, times `by` (cosines or ones); y is `by` or 0. */
-ASP_FN void loop_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, asp_cv3s wo,
-                       IN mz, IN c, IN D, IN sigma_i, IN sigma_o, IN by, OUT x, OUT y)
-{
-    size_t i;
-    ASP_IN_PLACE
-    for (i = 0; i < n; i++) {
-        asp_v3 a, b;
-        asp_real part;
-        a.x = wi.x[i];
-        a.y = wi.y[i];
-        a.z = wi.z[i];
-        b.x = wo.x[i];
-        b.y = wo.y[i];
-        b.z = wo.z[i];
-        part = facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], R(0.25) * D[i], mask);
-        y[i] = aspi_min(a.z, b.z) <= R(0.0) ? R(0.0) : by[i];
-        x[i] = part * y[i];
-    }
-}
-
-ASP_FN void loop_weights(const asp_shape *k, size_t n, int mask, asp_cv3s wi,
-                         IN ox, IN oy, IN oz, IN mz, IN c, IN sigma_i, IN sigma_o, OUT x)
-{
-    size_t i;
-    ASP_IN_PLACE
-    for (i = 0; i < n; i++) {
-        asp_v3 a, b;
-        a.x = wi.x[i];
-        a.y = wi.y[i];
-        a.z = wi.z[i];
-        b.x = ox[i];
-        b.y = oy[i];
-        b.z = oz[i];
-        x[i] = b.z * facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], sigma_i[i], mask);
-    }
-}
-
-ASP_FN void loop_lobe_density(size_t n, const asp_real *ci, IN D, IN sigma_i,
-                              asp_real *out)
-{
-    size_t i;
-    ASP_IN_PLACE
-    for (i = 0; i < n; i++)
-        out[i] = lobe_density(ci[i], D[i], sigma_i[i]);
-}
-
-ASP_FN void loop_mixed_density(size_t n, const asp_real *ci, const asp_real *co,
-                               IN share, asp_real *out)
-{
-    size_t i;
-    ASP_IN_PLACE
-    for (i = 0; i < n; i++)
-        out[i] = mixed_density(ci[i], co[i], out[i], share[i]);
-}
-
-/* Cuts u1 in the share of the facets and the rest, each stretched to [0, 1). */
-ASP_FN void loop_choose(size_t n, IN share, IN u1, OUT facet, OUT stretched)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_real in = u1[i] / share[i], out = (u1[i] - share[i]) / (R(1.0) - share[i]);
-        facet[i] = u1[i] < share[i] ? R(1.0) : R(0.0);
-        stretched[i] = u1[i] < share[i] ? in : out;
-    }
-}
-
-ASP_FN void loop_mixed_direction(size_t n, IN facet, IN u1, IN u2, OUT ox, OUT oy,
-                                 OUT oz)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_v3 w = cosine_lobe(u1[i], u2[i]);
-        int in = facet[i] > R(0.0);
-        ox[i] = aspi_select(in, ox[i], w.x);
-        oy[i] = aspi_select(in, oy[i], w.y);
-        oz[i] = aspi_select(in, oz[i], w.z);
-    }
-}
-
-/* What the facets' and the base's terms are multiplied with to give f cos / pdf. */
-ASP_FN void loop_mixed_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, IN ox,
-                             IN oy, IN oz, IN mz, IN c, IN D, IN sigma_i, IN sigma_o,
-                             IN pdf, OUT x, OUT y)
-{
-    size_t i;
-    ASP_IN_PLACE
-    for (i = 0; i < n; i++) {
-        asp_v3 a, b;
-        asp_real p = pdf[i] <= R(0.0) ? R(1.0) : pdf[i], base, scale;
-        a.x = wi.x[i];
-        a.y = wi.y[i];
-        a.z = wi.z[i];
-        b.x = ox[i];
-        b.y = oy[i];
-        b.z = oz[i];
-        base = b.z / p;
-        scale = R(0.25) * D[i] / p;
-        y[i] = aspi_min(a.z, b.z) <= R(0.0) || pdf[i] <= R(0.0) ? R(0.0) : base;
-        scale = pdf[i] <= R(0.0) ? R(0.0) : scale;
-        x[i] = b.z * facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], scale, mask);
-    }
-}
-
-ASP_FN void loop_conductor(size_t n, asp_real eta, asp_real kappa, IN c, OUT F)
-{
-    size_t i;
-    for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_conductor(c[i], eta, kappa);
-}
-
-ASP_FN void loop_f82(size_t n, asp_real f0, asp_real tint, IN c, OUT F)
-{
-    size_t i;
-    for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_f82(c[i], f0, tint);
-}
-
-ASP_FN void loop_dielectric(size_t n, asp_real eta, IN c, OUT F)
-{
-    size_t i;
-    for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_dielectric(c[i], eta);
-}
-
-ASP_FN void loop_one(size_t n, IN c, OUT F)
-{
-    size_t i;
-    for (i = 0; i < n; i++)
-        F[i] = c[i] == c[i] ? R(1.0) : c[i];
-}
-
-/* ---- blocks */
-
-ASP_FN void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c, asp_real *r, asp_real *g,
-                          asp_real *b)
-{
-    switch (mat->fresnel) {
-    case ASPI_FRESNEL_CONDUCTOR:
-        loop_conductor(n, mat->c.r, mat->d.r, c, r);
-        loop_conductor(n, mat->c.g, mat->d.g, c, g);
-        loop_conductor(n, mat->c.b, mat->d.b, c, b);
-        break;
-    case ASPI_FRESNEL_F82:
-        loop_f82(n, mat->c.r, mat->d.r, c, r);
-        loop_f82(n, mat->c.g, mat->d.g, c, g);
-        loop_f82(n, mat->c.b, mat->d.b, c, b);
-        break;
-    case ASPI_FRESNEL_DIELECTRIC:
-        loop_dielectric(n, mat->c.r, c, r);
-        memcpy(g, r, n * sizeof *r);
-        memcpy(b, r, n * sizeof *r);
-        break;
-    default:
-        loop_one(n, c, r);
-        memcpy(g, r, n * sizeof *r);
-        memcpy(b, r, n * sizeof *r);
-    }
-}
-
-ASP_FN void block_share(const asp_mat *mat, size_t n, const asp_real *ci, asp_real *share)
-{
-    asp_real F[3][ASPI_BLOCK];
-    if (!n)
-        return;
-    block_fresnel(mat, n, ci, F[0], F[1], F[2]);
-    mat->model->ASPI_MODEL_CALL(share_n)(mat, n, F[0], F[1], F[2], share);
-}
-
-/* f, or f cos_o where cosine is 1. Outputs may be inputs: they are written last. */
-ASP_CLONES static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, int cosine,
-                                  asp_c3s out)
-{
-    const asp_shape *k = &mat->ndf;
-    asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
-    asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], so[ASPI_BLOCK], x[ASPI_BLOCK], y[ASPI_BLOCK];
-    asp_real ones[ASPI_BLOCK], F[3][ASPI_BLOCK];
-    asp_cv3s m;
-    size_t i;
-    if (!n)
-        return;
-    for (i = 0; i < n && !cosine; i++)
-        ones[i] = R(1.0);
-    loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
-    m.x = mx;
-    m.y = my;
-    m.z = mz;
-    aspi_block_density(k, n, m, D);
-    aspi_block_sigma(k, n, wi, si);
-    aspi_block_sigma(k, n, wo, so);
-    if (mat->mask == 0)
-        loop_parts(k, n, 0, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
-    else
-        loop_parts(k, n, mat->mask, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
-    block_fresnel(mat, n, c, F[0], F[1], F[2]);
-    mat->model->ASPI_MODEL_CALL(value_n)(mat, n, x, y, F[0], F[1], F[2]);
-    memcpy(out.r, F[0], n * sizeof *out.r);
-    memcpy(out.g, F[1], n * sizeof *out.g);
-    memcpy(out.b, F[2], n * sizeof *out.b);
-}
-
-ASP_CLONES static void block_pdf(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
-{
-    const asp_shape *k = &mat->ndf;
-    asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
-    asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], share[ASPI_BLOCK], p[ASPI_BLOCK];
-    asp_cv3s m;
-    if (!n)
-        return;
-    loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
-    m.x = mx;
-    m.y = my;
-    m.z = mz;
-    aspi_block_density(k, n, m, D);
-    aspi_block_sigma(k, n, wi, si);
-    loop_lobe_density(n, wi.z, D, si, p);
-    if (mat->model->mixed) {
-        block_share(mat, n, wi.z, share);
-        loop_mixed_density(n, wi.z, wo.z, share, p);
-    }
-    memcpy(out, p, n * sizeof *out);
-}
-
-/* Visible normals only: D cancels in the weight, which is F J sigma_i cos_o. */
-ASP_CLONES static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s wi,
-                                         const asp_real *u1,
-                                         const asp_real *u2, asp_real o[3][ASPI_BLOCK], asp_real *pdf,
-                                         asp_real F[3][ASPI_BLOCK])
-{
-    const asp_shape *k = &mat->ndf;
-    asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
-    asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], so[ASPI_BLOCK], x[ASPI_BLOCK];
-    asp_v3s m;
-    asp_cv3s cm, wo;
-    if (!n)
-        return;
-    cm.x = m.x = mx;
-    cm.y = m.y = my;
-    cm.z = m.z = mz;
-    wo.x = o[0];
-    wo.y = o[1];
-    wo.z = o[2];
-    aspi_block_visible(k, n, wi, u1, u2, m);
-    loop_reflect(n, wi.x, wi.y, wi.z, mx, my, mz, o[0], o[1], o[2], c);
-    aspi_block_density(k, n, cm, D);
-    aspi_block_sigma(k, n, wi, si);
-    aspi_block_sigma(k, n, wo, so);
-    loop_lobe_density(n, wi.z, D, si, pdf);
-    if (mat->mask == 0) /* a constant here spares the default the other masks' arithmetic */
-        loop_weights(k, n, 0, wi, o[0], o[1], o[2], mz, c, si, so, x);
-    else
-        loop_weights(k, n, mat->mask, wi, o[0], o[1], o[2], mz, c, si, so, x);
-    block_fresnel(mat, n, c, F[0], F[1], F[2]);
-    mat->model->ASPI_MODEL_CALL(value_n)(mat, n, x, x, F[0], F[1], F[2]);
-}
-
-ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s wi,
-                                          const asp_real *u1,
-                                          const asp_real *u2, asp_real o[3][ASPI_BLOCK], asp_real *pdf,
-                                          asp_real F[3][ASPI_BLOCK])
-{
-    const asp_shape *k = &mat->ndf;
-    asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
-    asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], so[ASPI_BLOCK], x[ASPI_BLOCK], y[ASPI_BLOCK];
-    asp_real share[ASPI_BLOCK], facet[ASPI_BLOCK], v1[ASPI_BLOCK];
-    asp_v3s m;
-    asp_cv3s cm, wo;
-    if (!n)
-        return;
-    cm.x = m.x = mx;
-    cm.y = m.y = my;
-    cm.z = m.z = mz;
-    wo.x = o[0];
-    wo.y = o[1];
-    wo.z = o[2];
-    block_share(mat, n, wi.z, share);
-    loop_choose(n, share, u1, facet, v1);
-    aspi_block_visible(k, n, wi, v1, u2, m);
-    loop_reflect(n, wi.x, wi.y, wi.z, mx, my, mz, o[0], o[1], o[2], c);
-    loop_mixed_direction(n, facet, v1, u2, o[0], o[1], o[2]);
-    loop_half(n, wi.x, wi.y, wi.z, o[0], o[1], o[2], mx, my, mz, c);
-    aspi_block_density(k, n, cm, D);
-    aspi_block_sigma(k, n, wi, si);
-    aspi_block_sigma(k, n, wo, so);
-    loop_lobe_density(n, wi.z, D, si, pdf);
-    loop_mixed_density(n, wi.z, o[2], share, pdf);
-    loop_mixed_parts(k, n, mat->mask, wi, o[0], o[1], o[2], mz, c, D, si, so, pdf, x, y);
-    block_fresnel(mat, n, c, F[0], F[1], F[2]);
-    mat->model->ASPI_MODEL_CALL(value_n)(mat, n, x, y, F[0], F[1], F[2]);
-}
-
-/* ---- batches */
-
-#define FOR_BLOCKS(i, size, n) \
-    for (i = 0; i < (n) && (size = (n) - i < ASPI_BLOCK ? (n) - i : ASPI_BLOCK, 1); \
-         i += ASPI_BLOCK)
-
-static asp_cv3s ASP_NAME(shifted)(asp_cv3s a, size_t i)
-{
-    a.x += i;
-    a.y += i;
-    a.z += i;
-    return a;
-}
-
-static asp_c3s ASP_NAME(shifted_rgb)(asp_c3s a, size_t i)
-{
-    a.r += i;
-    a.g += i;
-    a.b += i;
-    return a;
-}
-#define FROM ASP_NAME(shifted)
-#define TO_RGB ASP_NAME(shifted_rgb)
-
-void ASPI_CALL(asp_eval_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_c3s out)
-{
-    size_t i, size;
-    FOR_BLOCKS(i, size, n)
-        block_eval(mat, size, FROM(wi, i), FROM(wo, i), 0, TO_RGB(out, i));
-}
-
-void ASPI_CALL(asp_eval_cos_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_c3s out)
-{
-    size_t i, size;
-    FOR_BLOCKS(i, size, n)
-        block_eval(mat, size, FROM(wi, i), FROM(wo, i), 1, TO_RGB(out, i));
-}
-
-void ASPI_CALL(asp_pdf_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
-{
-    size_t i, size;
-    FOR_BLOCKS(i, size, n)
-        block_pdf(mat, size, FROM(wi, i), FROM(wo, i), out + i);
-}
-
-void ASPI_CALL(asp_sample_n)(const asp_mat *mat, size_t n, asp_cv3s wi, const asp_real *u1,
-                             const asp_real *u2, asp_v3s wo, asp_real *pdf, asp_c3s weight)
-{
-    asp_real o[3][ASPI_BLOCK], p[ASPI_BLOCK], F[3][ASPI_BLOCK];
-    size_t i, size;
-    FOR_BLOCKS(i, size, n) {
-        size_t bytes = size * sizeof(asp_real);
-        if (mat->model->mixed)
-            block_sample_mixed(mat, size, FROM(wi, i), u1 + i, u2 + i, o, p, F);
-        else
-            block_sample_pure(mat, size, FROM(wi, i), u1 + i, u2 + i, o, p, F);
-        memcpy(wo.x + i, o[0], bytes);
-        memcpy(wo.y + i, o[1], bytes);
-        memcpy(wo.z + i, o[2], bytes);
-        memcpy(pdf + i, p, bytes);
-        memcpy(weight.r + i, F[0], bytes);
-        memcpy(weight.g + i, F[1], bytes);
-        memcpy(weight.b + i, F[2], bytes);
-    }
-}
-
-#undef IN
-#undef OUT
-#undef FROM
-#undef TO_RGB
-#undef FOR_BLOCKS
 #endif

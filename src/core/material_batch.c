@@ -1,0 +1,425 @@
+/* material_batch.c - eval, pdf and sample of reflecting materials over arrays: asperity.h sections 8, 9
+ *
+ * Read three times like facets.c; the formulas are in reflection.h, so that element i is bit for bit
+ * what the single call gives. */
+#ifndef ASP_PRECISION
+#include "core/bsdf.h"
+
+#define ASP_PRECISION 64
+#include "material_batch.c"
+#undef ASP_PRECISION
+#define ASP_PRECISION 32
+#include "material_batch.c"
+#undef ASP_PRECISION
+
+#else
+#include "core/blocks.h"
+#include "core/bsdf_number.h"
+#include "core/reflection.h"
+
+#ifndef ASPI_MATERIAL_BATCH_NAMES
+#define ASPI_MATERIAL_BATCH_NAMES
+#define block_fresnel ASP_NAME(block_fresnel)
+#define block_share ASP_NAME(block_share)
+#define block_eval ASP_NAME(block_eval)
+#define block_pdf ASP_NAME(block_pdf)
+#define block_sample_pure ASP_NAME(block_sample_pure)
+#define block_sample_mixed ASP_NAME(block_sample_mixed)
+#define loop_half ASP_NAME(loop_half)
+#define loop_reflect ASP_NAME(loop_reflect)
+#define loop_parts ASP_NAME(loop_parts)
+#define loop_weights ASP_NAME(loop_weights)
+#define loop_lobe_density ASP_NAME(loop_lobe_density)
+#define loop_mixed_density ASP_NAME(loop_mixed_density)
+#define loop_choose ASP_NAME(loop_choose)
+#define loop_mixed_direction ASP_NAME(loop_mixed_direction)
+#define loop_mixed_parts ASP_NAME(loop_mixed_parts)
+#define loop_one ASP_NAME(loop_one)
+#define loop_conductor ASP_NAME(loop_conductor)
+#define loop_f82 ASP_NAME(loop_f82)
+#define loop_dielectric ASP_NAME(loop_dielectric)
+#endif
+
+#define IN const asp_real *ASP_RESTRICT
+#define OUT asp_real *ASP_RESTRICT
+
+/* ---- loops */
+
+ASP_FN void loop_half(size_t n, IN ix, IN iy, IN iz, IN ox, IN oy, IN oz, OUT mx, OUT my,
+                      OUT mz, OUT c)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_v3 wi, wo, m;
+        wi.x = ix[i];
+        wi.y = iy[i];
+        wi.z = iz[i];
+        wo.x = ox[i];
+        wo.y = oy[i];
+        wo.z = oz[i];
+        m = aspi_half_vector(wi, wo);
+        mx[i] = m.x;
+        my[i] = m.y;
+        mz[i] = m.z;
+        c[i] = aspi_dot(wi, m);
+    }
+}
+
+ASP_FN void loop_reflect(size_t n, IN ix, IN iy, IN iz, IN mx, IN my, IN mz, OUT ox,
+                         OUT oy, OUT oz, OUT c)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_v3 wi, m, wo;
+        wi.x = ix[i];
+        wi.y = iy[i];
+        wi.z = iz[i];
+        m.x = mx[i];
+        m.y = my[i];
+        m.z = mz[i];
+        wo = aspi_reflect(wi, m);
+        ox[i] = wo.x;
+        oy[i] = wo.y;
+        oz[i] = wo.z;
+        c[i] = aspi_dot(wi, m);
+    }
+}
+
+/* facet_part with scale D/4, times `by` (cosines or ones); y is `by` or 0. */
+ASP_FN void loop_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, asp_cv3s wo,
+                       IN mz, IN c, IN D, IN sigma_i, IN sigma_o, IN by, OUT x, OUT y)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        asp_v3 a, b;
+        asp_real part;
+        a.x = wi.x[i];
+        a.y = wi.y[i];
+        a.z = wi.z[i];
+        b.x = wo.x[i];
+        b.y = wo.y[i];
+        b.z = wo.z[i];
+        part = aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], R(0.25) * D[i], mask);
+        y[i] = aspi_min(a.z, b.z) <= R(0.0) ? R(0.0) : by[i];
+        x[i] = part * y[i];
+    }
+}
+
+ASP_FN void loop_weights(const asp_shape *k, size_t n, int mask, asp_cv3s wi,
+                         IN ox, IN oy, IN oz, IN mz, IN c, IN sigma_i, IN sigma_o, OUT x)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        asp_v3 a, b;
+        a.x = wi.x[i];
+        a.y = wi.y[i];
+        a.z = wi.z[i];
+        b.x = ox[i];
+        b.y = oy[i];
+        b.z = oz[i];
+        x[i] = b.z * aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], sigma_i[i], mask);
+    }
+}
+
+ASP_FN void loop_lobe_density(size_t n, const asp_real *ci, IN D, IN sigma_i,
+                              asp_real *out)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++)
+        out[i] = aspi_lobe_density(ci[i], D[i], sigma_i[i]);
+}
+
+ASP_FN void loop_mixed_density(size_t n, const asp_real *ci, const asp_real *co,
+                               IN share, asp_real *out)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++)
+        out[i] = aspi_mixed_density(ci[i], co[i], out[i], share[i]);
+}
+
+/* Cuts u1 in the share of the facets and the rest, each stretched to [0, 1). */
+ASP_FN void loop_choose(size_t n, IN share, IN u1, OUT facet, OUT stretched)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_real in = u1[i] / share[i], out = (u1[i] - share[i]) / (R(1.0) - share[i]);
+        facet[i] = u1[i] < share[i] ? R(1.0) : R(0.0);
+        stretched[i] = u1[i] < share[i] ? in : out;
+    }
+}
+
+ASP_FN void loop_mixed_direction(size_t n, IN facet, IN u1, IN u2, OUT ox, OUT oy,
+                                 OUT oz)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_v3 w = aspi_cosine_lobe(u1[i], u2[i]);
+        int in = facet[i] > R(0.0);
+        ox[i] = aspi_select(in, ox[i], w.x);
+        oy[i] = aspi_select(in, oy[i], w.y);
+        oz[i] = aspi_select(in, oz[i], w.z);
+    }
+}
+
+/* What the facets' and the base's terms are multiplied with to give f cos / pdf. */
+ASP_FN void loop_mixed_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, IN ox,
+                             IN oy, IN oz, IN mz, IN c, IN D, IN sigma_i, IN sigma_o,
+                             IN pdf, OUT x, OUT y)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        asp_v3 a, b;
+        asp_real p = pdf[i] <= R(0.0) ? R(1.0) : pdf[i], base, scale;
+        a.x = wi.x[i];
+        a.y = wi.y[i];
+        a.z = wi.z[i];
+        b.x = ox[i];
+        b.y = oy[i];
+        b.z = oz[i];
+        base = b.z / p;
+        scale = R(0.25) * D[i] / p;
+        y[i] = aspi_min(a.z, b.z) <= R(0.0) || pdf[i] <= R(0.0) ? R(0.0) : base;
+        scale = pdf[i] <= R(0.0) ? R(0.0) : scale;
+        x[i] = b.z * aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], scale, mask);
+    }
+}
+
+ASP_FN void loop_conductor(size_t n, asp_real eta, asp_real kappa, IN c, OUT F)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        F[i] = aspi_fresnel_conductor(c[i], eta, kappa);
+}
+
+ASP_FN void loop_f82(size_t n, asp_real f0, asp_real tint, IN c, OUT F)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        F[i] = aspi_fresnel_f82(c[i], f0, tint);
+}
+
+ASP_FN void loop_dielectric(size_t n, asp_real eta, IN c, OUT F)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        F[i] = aspi_fresnel_dielectric(c[i], eta);
+}
+
+ASP_FN void loop_one(size_t n, IN c, OUT F)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        F[i] = c[i] == c[i] ? R(1.0) : c[i];
+}
+
+/* ---- blocks */
+
+ASP_FN void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c, asp_real *r, asp_real *g,
+                          asp_real *b)
+{
+    switch (mat->fresnel) {
+    case ASPI_FRESNEL_CONDUCTOR:
+        loop_conductor(n, mat->c.r, mat->d.r, c, r);
+        loop_conductor(n, mat->c.g, mat->d.g, c, g);
+        loop_conductor(n, mat->c.b, mat->d.b, c, b);
+        break;
+    case ASPI_FRESNEL_F82:
+        loop_f82(n, mat->c.r, mat->d.r, c, r);
+        loop_f82(n, mat->c.g, mat->d.g, c, g);
+        loop_f82(n, mat->c.b, mat->d.b, c, b);
+        break;
+    case ASPI_FRESNEL_DIELECTRIC:
+        loop_dielectric(n, mat->c.r, c, r);
+        memcpy(g, r, n * sizeof *r);
+        memcpy(b, r, n * sizeof *r);
+        break;
+    default:
+        loop_one(n, c, r);
+        memcpy(g, r, n * sizeof *r);
+        memcpy(b, r, n * sizeof *r);
+    }
+}
+
+ASP_FN void block_share(const asp_mat *mat, size_t n, const asp_real *ci, asp_real *share)
+{
+    asp_real F[3][ASPI_BLOCK];
+    if (!n)
+        return;
+    block_fresnel(mat, n, ci, F[0], F[1], F[2]);
+    mat->model->ASPI_CALL(share_n)(mat, n, F[0], F[1], F[2], share);
+}
+
+/* f, or f cos_o where cosine is 1. Outputs may be inputs: they are written last. */
+ASP_CLONES static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, int cosine,
+                                  asp_c3s out)
+{
+    const asp_shape *k = &mat->ndf;
+    asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
+    asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], so[ASPI_BLOCK], x[ASPI_BLOCK], y[ASPI_BLOCK];
+    asp_real ones[ASPI_BLOCK], F[3][ASPI_BLOCK];
+    asp_cv3s m;
+    size_t i;
+    if (!n)
+        return;
+    for (i = 0; i < n && !cosine; i++)
+        ones[i] = R(1.0);
+    loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
+    m.x = mx;
+    m.y = my;
+    m.z = mz;
+    aspi_block_density(k, n, m, D);
+    aspi_block_sigma(k, n, wi, si);
+    aspi_block_sigma(k, n, wo, so);
+    if (mat->mask == 0)
+        loop_parts(k, n, 0, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
+    else
+        loop_parts(k, n, mat->mask, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
+    block_fresnel(mat, n, c, F[0], F[1], F[2]);
+    mat->model->ASPI_CALL(value_n)(mat, n, x, y, F[0], F[1], F[2]);
+    memcpy(out.r, F[0], n * sizeof *out.r);
+    memcpy(out.g, F[1], n * sizeof *out.g);
+    memcpy(out.b, F[2], n * sizeof *out.b);
+}
+
+ASP_CLONES static void block_pdf(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
+{
+    const asp_shape *k = &mat->ndf;
+    asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
+    asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], share[ASPI_BLOCK], p[ASPI_BLOCK];
+    asp_cv3s m;
+    if (!n)
+        return;
+    loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
+    m.x = mx;
+    m.y = my;
+    m.z = mz;
+    aspi_block_density(k, n, m, D);
+    aspi_block_sigma(k, n, wi, si);
+    loop_lobe_density(n, wi.z, D, si, p);
+    if (mat->model->mixed) {
+        block_share(mat, n, wi.z, share);
+        loop_mixed_density(n, wi.z, wo.z, share, p);
+    }
+    memcpy(out, p, n * sizeof *out);
+}
+
+/* Visible normals only: D cancels in the weight, which is F J sigma_i cos_o. */
+ASP_CLONES static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s wi,
+                                         const asp_real *u1,
+                                         const asp_real *u2, asp_real o[3][ASPI_BLOCK], asp_real *pdf,
+                                         asp_real F[3][ASPI_BLOCK])
+{
+    const asp_shape *k = &mat->ndf;
+    asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
+    asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], so[ASPI_BLOCK], x[ASPI_BLOCK];
+    asp_v3s m;
+    asp_cv3s cm, wo;
+    if (!n)
+        return;
+    cm.x = m.x = mx;
+    cm.y = m.y = my;
+    cm.z = m.z = mz;
+    wo.x = o[0];
+    wo.y = o[1];
+    wo.z = o[2];
+    aspi_block_visible(k, n, wi, u1, u2, m);
+    loop_reflect(n, wi.x, wi.y, wi.z, mx, my, mz, o[0], o[1], o[2], c);
+    aspi_block_density(k, n, cm, D);
+    aspi_block_sigma(k, n, wi, si);
+    aspi_block_sigma(k, n, wo, so);
+    loop_lobe_density(n, wi.z, D, si, pdf);
+    if (mat->mask == 0) /* a constant here spares the default the other masks' arithmetic */
+        loop_weights(k, n, 0, wi, o[0], o[1], o[2], mz, c, si, so, x);
+    else
+        loop_weights(k, n, mat->mask, wi, o[0], o[1], o[2], mz, c, si, so, x);
+    block_fresnel(mat, n, c, F[0], F[1], F[2]);
+    mat->model->ASPI_CALL(value_n)(mat, n, x, x, F[0], F[1], F[2]);
+}
+
+ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s wi,
+                                          const asp_real *u1,
+                                          const asp_real *u2, asp_real o[3][ASPI_BLOCK], asp_real *pdf,
+                                          asp_real F[3][ASPI_BLOCK])
+{
+    const asp_shape *k = &mat->ndf;
+    asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
+    asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], so[ASPI_BLOCK], x[ASPI_BLOCK], y[ASPI_BLOCK];
+    asp_real share[ASPI_BLOCK], facet[ASPI_BLOCK], v1[ASPI_BLOCK];
+    asp_v3s m;
+    asp_cv3s cm, wo;
+    if (!n)
+        return;
+    cm.x = m.x = mx;
+    cm.y = m.y = my;
+    cm.z = m.z = mz;
+    wo.x = o[0];
+    wo.y = o[1];
+    wo.z = o[2];
+    block_share(mat, n, wi.z, share);
+    loop_choose(n, share, u1, facet, v1);
+    aspi_block_visible(k, n, wi, v1, u2, m);
+    loop_reflect(n, wi.x, wi.y, wi.z, mx, my, mz, o[0], o[1], o[2], c);
+    loop_mixed_direction(n, facet, v1, u2, o[0], o[1], o[2]);
+    loop_half(n, wi.x, wi.y, wi.z, o[0], o[1], o[2], mx, my, mz, c);
+    aspi_block_density(k, n, cm, D);
+    aspi_block_sigma(k, n, wi, si);
+    aspi_block_sigma(k, n, wo, so);
+    loop_lobe_density(n, wi.z, D, si, pdf);
+    loop_mixed_density(n, wi.z, o[2], share, pdf);
+    loop_mixed_parts(k, n, mat->mask, wi, o[0], o[1], o[2], mz, c, D, si, so, pdf, x, y);
+    block_fresnel(mat, n, c, F[0], F[1], F[2]);
+    mat->model->ASPI_CALL(value_n)(mat, n, x, y, F[0], F[1], F[2]);
+}
+
+/* ---- batches */
+
+void ASPI_CALL(asp_eval_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_c3s out)
+{
+    size_t i, size;
+    ASPI_FOR_BLOCKS(i, size, n)
+        block_eval(mat, size, ASPI_FROM(wi, i), ASPI_FROM(wo, i), 0, ASPI_TO_RGB(out, i));
+}
+
+void ASPI_CALL(asp_eval_cos_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_c3s out)
+{
+    size_t i, size;
+    ASPI_FOR_BLOCKS(i, size, n)
+        block_eval(mat, size, ASPI_FROM(wi, i), ASPI_FROM(wo, i), 1, ASPI_TO_RGB(out, i));
+}
+
+void ASPI_CALL(asp_pdf_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
+{
+    size_t i, size;
+    ASPI_FOR_BLOCKS(i, size, n)
+        block_pdf(mat, size, ASPI_FROM(wi, i), ASPI_FROM(wo, i), out + i);
+}
+
+void ASPI_CALL(asp_sample_n)(const asp_mat *mat, size_t n, asp_cv3s wi, const asp_real *u1,
+                             const asp_real *u2, asp_v3s wo, asp_real *pdf, asp_c3s weight)
+{
+    asp_real o[3][ASPI_BLOCK], p[ASPI_BLOCK], F[3][ASPI_BLOCK];
+    size_t i, size;
+    ASPI_FOR_BLOCKS(i, size, n) {
+        size_t bytes = size * sizeof(asp_real);
+        if (mat->model->mixed)
+            block_sample_mixed(mat, size, ASPI_FROM(wi, i), u1 + i, u2 + i, o, p, F);
+        else
+            block_sample_pure(mat, size, ASPI_FROM(wi, i), u1 + i, u2 + i, o, p, F);
+        memcpy(wo.x + i, o[0], bytes);
+        memcpy(wo.y + i, o[1], bytes);
+        memcpy(wo.z + i, o[2], bytes);
+        memcpy(pdf + i, p, bytes);
+        memcpy(weight.r + i, F[0], bytes);
+        memcpy(weight.g + i, F[1], bytes);
+        memcpy(weight.b + i, F[2], bytes);
+    }
+}
+
+#undef IN
+#undef OUT
+#endif

@@ -1,0 +1,71 @@
+/* reflection.h - the formulas of reflection by facets, shared by single calls and loops
+ *
+ * The half vector m of wi and wo gives D(m), the two views give sigma, and the scattering model makes
+ * f of them:
+ *     f = value(F(wi.m), D J / 4),  J = G2 / (cos_i cos_o)
+ *     pdf = p D / (4 sigma_i) + (1 - p) cos_o / pi,  p = 1 unless the model is mixed. */
+
+#include "asperity/facet.h"
+#include "asperity/fresnel.h"
+
+#ifndef ASPI_REFLECTION_NAMES
+#define ASPI_REFLECTION_NAMES
+#define aspi_half_vector ASP_NAME(aspi_half_vector)
+#define aspi_cosine_lobe ASP_NAME(aspi_cosine_lobe)
+#define aspi_facet_part ASP_NAME(aspi_facet_part)
+#define aspi_lobe_density ASP_NAME(aspi_lobe_density)
+#define aspi_mixed_density ASP_NAME(aspi_mixed_density)
+#endif
+
+#if (ASP_PRECISION == 64 && !defined(ASPI_REFLECTION_64)) || \
+    (ASP_PRECISION == 32 && !defined(ASPI_REFLECTION_32))
+#if ASP_PRECISION == 64
+#define ASPI_REFLECTION_64
+#else
+#define ASPI_REFLECTION_32
+#endif
+
+ASP_FN asp_v3 aspi_half_vector(asp_v3 wi, asp_v3 wo)
+{
+    wi.x = wi.x + wo.x;
+    wi.y = wi.y + wo.y;
+    wi.z = wi.z + wo.z;
+    return aspi_normalize(wi);
+}
+
+/* A direction with density cos / pi. */
+ASP_FN asp_v3 aspi_cosine_lobe(asp_real u1, asp_real u2)
+{
+    asp_v2 t = aspi_sincos2pi(u2);
+    asp_real r = aspi_sqrt(u1);
+    asp_v3 w;
+    w.x = r * t.x;
+    w.y = r * t.y;
+    w.z = aspi_sqrt(R(1.0) - u1);
+    return w;
+}
+
+/* `scale` J, 0 where a direction is below the horizon; scale is D/4 for f, sigma_i for a weight. */
+ASP_FN asp_real aspi_facet_part(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c,
+                           asp_real sigma_i, asp_real sigma_o, asp_real scale, int mask)
+{
+    asp_real si = aspi_masked(k, wi, sigma_i, mask), so = aspi_masked(k, wo, sigma_o, mask);
+    asp_real x = aspi_finite(scale * aspi_joint(wi.z, wo.z, si, so, mz, c, c, mask));
+    asp_real dark = aspi_min(aspi_min(wi.z, wo.z), aspi_min(c, mz));
+    return dark <= R(0.0) ? R(0.0) : x;
+}
+
+/* Visible normals through reflection: D / (4 sigma_i). */
+ASP_FN asp_real aspi_lobe_density(asp_real ci, asp_real D, asp_real sigma_i)
+{
+    asp_real p = aspi_finite(R(0.25) * D / (sigma_i < ASP_SMALLEST ? ASP_SMALLEST : sigma_i));
+    return ci <= R(0.0) ? R(0.0) : p;
+}
+
+ASP_FN asp_real aspi_mixed_density(asp_real ci, asp_real co, asp_real lobe, asp_real share)
+{
+    asp_real up = co < R(0.0) ? R(0.0) : co;
+    asp_real p = share * lobe + (R(1.0) - share) * (up * R(1.0 / ASP_PI));
+    return ci <= R(0.0) ? R(0.0) : p;
+}
+#endif
