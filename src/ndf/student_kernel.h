@@ -255,7 +255,7 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
     asp_real folded = aspi_max(right, near);
     asp_real side = right > R(0.0) ? R(-1.0) : R(1.0), turn = near > R(0.0) ? R(-1.0) : R(1.0);
     asp_real shift = folded > R(0.0) ? far : R(0.0);
-    asp_real target = folded > R(0.0) ? rest * sigma : area;
+    asp_real target = aspi_max(folded > R(0.0) ? rest * sigma : area, tiny);
     /* the start */
     asp_real at_0 = right > R(0.0) ? at_right : at_left;
     asp_real full = below > R(0.0) ? R(1.0) / u : at_0 / target;
