@@ -291,12 +291,11 @@ typedef struct asp_fit_options {
 size_t asp_fit_models(const asp_model **out, size_t room);
 
 /* The geometries that a fit sees, to be freed with free(); NULL on failure.
- * Scattered data: all listed ones with both directions above the horizon and a finite value.
- * Gridded data: the 84 theta_h of MERL's bins up to 78 degrees, theta_d = 2.5, 7.5, ... 77.5 degrees,
- * 8 phi_d, all at centres of MERL's bins, so that sums are like sums over a MERL table; anisotropic
- * data at 4 azimuths of the half vector. Left out are geometries with either direction beyond 80 degrees, where
- * instruments interpolate and microfacet theory ends, and those where no channel has a value
- * above 0. */
+ * Scattered data: all listed ones with finite values. Gridded data: the 84 theta_h of MERL's bins up
+ * to 78 degrees, theta_d = 2.5, 7.5, ... 77.5 degrees, 8 phi_d, all at centres of MERL's bins, so
+ * that sums are like sums over a MERL table; where a channel has a value above 0; anisotropic data
+ * at 4 azimuths of the half vector. Left out of either are geometries with a direction beyond 80
+ * degrees, where instruments extrapolate and single scattering ends. */
 asp_measurement *asp_fit_geometries(const asp_measured *measured, size_t *count, asp_error *err);
 
 /* Fits each model. *results: one per model in the order given, to be freed with free(); written on

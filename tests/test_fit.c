@@ -1,5 +1,6 @@
 /* test_fit.c - parameters come back from data made with them; errors and uncertainties mean what
  * they say; the same call gives the same bits */
+#define _XOPEN_SOURCE 700
 #include "data_test.h"
 #include "asperity_ndf.h"
 

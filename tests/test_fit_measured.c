@@ -2,6 +2,7 @@
  * contains, and the fitted lobes lie where the measured ones do
  *
  * Reads the RGL files and a MERL slice in $ASPERITY_SHARED (default ../shared); skipped without. */
+#define _XOPEN_SOURCE 700
 #include "data_test.h"
 #include "asperity_ndf.h"
 
@@ -29,7 +30,7 @@ static void one(const char *path, const char *name, const char *loss, size_t at)
     asp_fit_result *r = NULL;
     size_t n = 0;
     asp_measured *m = asp_measured_read(path, &err);
-    if (!CHECK(m, "%s", m ? "" : asp_error_text(&err, line, sizeof line)))
+    if (!CHECK(m != NULL, "%s", m ? "" : asp_error_text(&err, line, sizeof line)))
         return;
     clock_t start = clock();
     asp_fit_options options = { .loss = loss };

@@ -247,6 +247,7 @@ static int show(job *j, report *r)
             report_entry *e = &j->entry[j->entries++];
             memcpy(e->name, name, sizeof e->name);
             e->summary = summary_of(r);
+            e->cells = r->count;
             status = e->summary ? CMD_OK : cmd_failed("out of memory");
         }
     }

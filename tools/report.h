@@ -75,7 +75,7 @@ char *report_ratio(const report *r);
 /* The whole page. */
 void report_html(const report *r, page *out);
 /* The page that leads to several. */
-typedef struct report_entry { char name[256]; char *summary; } report_entry;
+typedef struct report_entry { char name[256]; char *summary; size_t cells; } report_entry;
 void report_index(const report_entry *entry, size_t count, page *out);
 
 /* Style and head shared by both pages; `title` is escaped. */

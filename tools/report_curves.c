@@ -42,33 +42,38 @@ static int same_angle(double a, double b)
     return fabs(a - b) < 0.1 / DEGREES;
 }
 
-/* The three listed angles with most points, near the lower, middle and upper end. */
+/* Listed angles of incidence whose outgoing directions are many and spread over half of the plane;
+ * where there are more than room for, evenly chosen ones. */
 static size_t listed_incidences(const report *r, double *out, size_t room)
 {
     enum { ANGLES = 256, ENOUGH = 15 };
-    double angle[ANGLES], good[ANGLES];
-    size_t count[ANGLES], n = 0, m = 0;
+    struct { double theta_i, low, high; size_t count; } group[ANGLES];
+    double good[ANGLES];
+    size_t n = 0, m = 0;
     for (size_t i = 0; i < r->geometries; i++) {
         double ti, to;
         size_t k = 0;
         if (!plane_angles(&r->geometry[i], &ti, &to))
             continue;
-        while (k < n && !same_angle(angle[k], ti))
+        while (k < n && !same_angle(group[k].theta_i, ti))
             k++;
         if (k == ANGLES)
             continue;
         if (k == n) {
-            angle[n] = ti;
-            count[n++] = 0;
+            group[n].theta_i = ti;
+            group[n].low = group[n].high = to;
+            group[n++].count = 0;
         }
-        count[k]++;
+        group[k].low = fmin(group[k].low, to);
+        group[k].high = fmax(group[k].high, to);
+        group[k].count++;
     }
     for (size_t k = 0; k < n; k++)
-        if (count[k] >= ENOUGH) {
+        if (group[k].count >= ENOUGH && group[k].high - group[k].low > 90 / DEGREES) {
             size_t at = m++;
-            for (; at && good[at - 1] > angle[k]; at--)
+            for (; at && good[at - 1] > group[k].theta_i; at--)
                 good[at] = good[at - 1];
-            good[at] = angle[k];
+            good[at] = group[k].theta_i;
         }
     for (size_t k = 0; k < room && k < m; k++)
         out[k] = m <= room ? good[k] : good[(2 * k + 1) * m / (2 * room)];

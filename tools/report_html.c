@@ -53,7 +53,7 @@ static void measured_what(const report *r, page *out)
              r->info.isotropic ? "Isotropic" : "Anisotropic (fitted by isotropic models)",
              r->info.scattered ? "listed geometries" : "a full table", r->info.channels,
              r->info.channels == 1 ? "" : "s", r->info.samples, r->geometries);
-    page_add(out, r->info.scattered ? ".</p>\n" : ", none beyond 80° from the normal.</p>\n");
+    page_add(out, ", none beyond 80° from the normal.</p>\n");
 }
 
 static void made_what(const report *r, page *out)
@@ -273,7 +273,11 @@ void report_html(const report *r, page *out)
 void report_index(const report_entry *entry, size_t count, page *out)
 {
     report_head(out, "Fits");
-    page_add(out, "<h1>Fits</h1>\n<table>\n<tr><th>measurement</th><th>errors</th></tr>\n");
+    size_t cells = 1;
+    for (size_t i = 0; i < count; i++)
+        cells = entry[i].cells > cells ? entry[i].cells : cells;
+    page_put(out, "<h1>Fits</h1>\n<table>\n<tr><th>measurement</th><th colspan=\"%zu\">error, the "
+                  "best of each marked</th></tr>\n", cells);
     for (size_t i = 0; i < count; i++) {
         page_add(out, "<tr><td><a href=\"");
         for (const char *c = entry[i].name; *c; c++)       /* RFC 3986: the unreserved as they are */

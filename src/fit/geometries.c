@@ -33,7 +33,7 @@ static void from_half(double theta_h, double phi_h, double theta_d, double phi_d
 
 static int usable(const asp_measurement *m)
 {
-    if (!(m->wi.z > 0 && m->wo.z > 0))
+    if (!(m->wi.z >= COS_GRAZING && m->wo.z >= COS_GRAZING))
         return 0;
     return isfinite(m->f.r) && isfinite(m->f.g) && isfinite(m->f.b);
 }
@@ -58,8 +58,6 @@ static size_t from_grid(const asp_measured *measured, int isotropic, asp_measure
                     asp_measurement m;
                     from_half(theta_h, turn * 45 * DEGREE, (j + 0.5) * DEGREE,
                               phi_d_degrees[k] * DEGREE, &m.wi, &m.wo);
-                    if (m.wi.z < COS_GRAZING || m.wo.z < COS_GRAZING)
-                        continue;
                     m.f = asp_measured_eval(measured, m.wi, m.wo);
                     if (usable(&m) && (m.f.r > 0 || m.f.g > 0 || m.f.b > 0))
                         out[n++] = m;
