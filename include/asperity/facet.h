@@ -9,6 +9,7 @@
 #define aspi_view ASP_NAME(aspi_view)
 #define aspi_facet ASP_NAME(aspi_facet)
 #define aspi_facet_back ASP_NAME(aspi_facet_back)
+#define aspi_at ASP_NAME(aspi_at)
 #define aspi_dot ASP_NAME(aspi_dot)
 #define aspi_length2 ASP_NAME(aspi_length2)
 #define aspi_normalize ASP_NAME(aspi_normalize)
@@ -35,6 +36,16 @@
 #else
 #define ASP_FACET_32
 #endif
+
+/* Element i of a structure of arrays. */
+ASP_FN asp_v3 aspi_at(const asp_real *x, const asp_real *y, const asp_real *z, size_t i)
+{
+    asp_v3 v;
+    v.x = x[i];
+    v.y = y[i];
+    v.z = z[i];
+    return v;
+}
 
 ASP_FN asp_real aspi_dot(asp_v3 a, asp_v3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 

@@ -65,6 +65,8 @@ ASP_CLONES static void ndf_sigma_n(const asp_shape *k, size_t n, const asp_real 
         out[i] = ndf_sigma(k, w[i], s2[i]);
 }
 
+/* A distribution whose formula is long may bring this loop itself, in stages. */
+#ifndef ASP_OWN_VISIBLE_N
 ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT vx,
                                      const asp_real *ASP_RESTRICT vy,
                                      const asp_real *ASP_RESTRICT vz,
@@ -75,15 +77,14 @@ ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_rea
     size_t i;
     for (i = 0; i < n; i++) {
         asp_v3 v, m;
-        v.x = vx[i];
-        v.y = vy[i];
-        v.z = vz[i];
+        v = aspi_at(vx, vy, vz, i);
         m = ndf_visible(k, v, u1[i], u2[i]);
         mx[i] = m.x;
         my[i] = m.y;
         mz[i] = m.z;
     }
 }
+#endif
 
 ASP_CLONES static void ndf_normal_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT u1,
                                     const asp_real *ASP_RESTRICT u2, asp_real *ASP_RESTRICT mx,

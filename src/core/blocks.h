@@ -90,9 +90,7 @@ ASP_FN void aspi_loop_density_in(const asp_shape *k, size_t n, IN x, IN y, IN z,
     for (i = 0; i < n; i++) {
         asp_v3 m;
         asp_v2 a;
-        m.x = x[i];
-        m.y = y[i];
-        m.z = z[i];
+        m = aspi_at(x, y, z, i);
         a = aspi_density_arguments(k, m);
         r2[i] = a.x;
         z2[i] = a.y;
@@ -113,10 +111,7 @@ ASP_FN void aspi_loop_view(const asp_shape *k, size_t n, asp_real sign, IN x, IN
 {
     size_t i;
     for (i = 0; i < n; i++) {
-        asp_v3 v;
-        v.x = x[i];
-        v.y = y[i];
-        v.z = z[i];
+        asp_v3 v = aspi_at(x, y, z, i);
         v = aspi_view(k, v);
         w[i] = sign * v.z;
         s2[i] = aspi_length2(v);
@@ -128,10 +123,7 @@ ASP_FN void aspi_loop_view_vectors(const asp_shape *k, size_t n, IN x, IN y, IN 
 {
     size_t i;
     for (i = 0; i < n; i++) {
-        asp_v3 v;
-        v.x = x[i];
-        v.y = y[i];
-        v.z = z[i];
+        asp_v3 v = aspi_at(x, y, z, i);
         v = aspi_view(k, v);
         vx[i] = v.x;
         vy[i] = v.y;
@@ -144,10 +136,7 @@ ASP_FN void aspi_loop_back(const asp_shape *k, size_t n, IN x, IN y, IN z, OUT m
 {
     size_t i;
     for (i = 0; i < n; i++) {
-        asp_v3 m;
-        m.x = x[i];
-        m.y = y[i];
-        m.z = z[i];
+        asp_v3 m = aspi_at(x, y, z, i);
         m = aspi_normalize(aspi_facet_back(k, m));
         mx[i] = m.x;
         my[i] = m.y;

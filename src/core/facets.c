@@ -191,10 +191,7 @@ ASP_CLONES static void loop_masking(const asp_shape *k, size_t n, int mask, asp_
     size_t i;
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
-        asp_v3 v;
-        v.x = w.x[i];
-        v.y = w.y[i];
-        v.z = w.z[i];
+        asp_v3 v = aspi_at(w.x, w.y, w.z, i);
         out[i] = masking(k, v, sigma[i], mask);
     }
 }
@@ -205,10 +202,7 @@ ASP_FN void loop_hidden(const asp_shape *k, size_t n, int mask, asp_cv3s w,
     size_t i;
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
-        asp_v3 v;
-        v.x = w.x[i];
-        v.y = w.y[i];
-        v.z = w.z[i];
+        asp_v3 v = aspi_at(w.x, w.y, w.z, i);
         out[i] = lambda_of(k, v, below[i], mask);
     }
 }
@@ -221,15 +215,9 @@ ASP_CLONES static void loop_joint(const asp_shape *k, size_t n, int mask, asp_cv
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
         asp_v3 a, b, c;
-        a.x = wi.x[i];
-        a.y = wi.y[i];
-        a.z = wi.z[i];
-        b.x = wo.x[i];
-        b.y = wo.y[i];
-        b.z = wo.z[i];
-        c.x = m.x[i];
-        c.y = m.y[i];
-        c.z = m.z[i];
+        a = aspi_at(wi.x, wi.y, wi.z, i);
+        b = aspi_at(wo.x, wo.y, wo.z, i);
+        c = aspi_at(m.x, m.y, m.z, i);
         out[i] = joint_masking(k, a, b, c, sigma_i[i], sigma_o[i], mask);
     }
 }
@@ -241,12 +229,8 @@ ASP_CLONES static void loop_visible_density(size_t n, asp_cv3s wi, asp_cv3s m, c
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
         asp_v3 a, b;
-        a.x = wi.x[i];
-        a.y = wi.y[i];
-        a.z = wi.z[i];
-        b.x = m.x[i];
-        b.y = m.y[i];
-        b.z = m.z[i];
+        a = aspi_at(wi.x, wi.y, wi.z, i);
+        b = aspi_at(m.x, m.y, m.z, i);
         out[i] = visible_density(aspi_dot(a, b), d[i], sigma[i]);
     }
 }

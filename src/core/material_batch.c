@@ -51,12 +51,8 @@ ASP_FN void loop_half(size_t n, IN ix, IN iy, IN iz, IN ox, IN oy, IN oz, OUT mx
     size_t i;
     for (i = 0; i < n; i++) {
         asp_v3 wi, wo, m;
-        wi.x = ix[i];
-        wi.y = iy[i];
-        wi.z = iz[i];
-        wo.x = ox[i];
-        wo.y = oy[i];
-        wo.z = oz[i];
+        wi = aspi_at(ix, iy, iz, i);
+        wo = aspi_at(ox, oy, oz, i);
         m = aspi_half_vector(wi, wo);
         mx[i] = m.x;
         my[i] = m.y;
@@ -71,12 +67,8 @@ ASP_FN void loop_reflect(size_t n, IN ix, IN iy, IN iz, IN mx, IN my, IN mz, OUT
     size_t i;
     for (i = 0; i < n; i++) {
         asp_v3 wi, m, wo;
-        wi.x = ix[i];
-        wi.y = iy[i];
-        wi.z = iz[i];
-        m.x = mx[i];
-        m.y = my[i];
-        m.z = mz[i];
+        wi = aspi_at(ix, iy, iz, i);
+        m = aspi_at(mx, my, mz, i);
         wo = aspi_reflect(wi, m);
         ox[i] = wo.x;
         oy[i] = wo.y;
@@ -94,12 +86,8 @@ ASP_FN void loop_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, asp_
     for (i = 0; i < n; i++) {
         asp_v3 a, b;
         asp_real part;
-        a.x = wi.x[i];
-        a.y = wi.y[i];
-        a.z = wi.z[i];
-        b.x = wo.x[i];
-        b.y = wo.y[i];
-        b.z = wo.z[i];
+        a = aspi_at(wi.x, wi.y, wi.z, i);
+        b = aspi_at(wo.x, wo.y, wo.z, i);
         part = aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], R(0.25) * D[i], mask);
         y[i] = aspi_min(a.z, b.z) <= R(0.0) ? R(0.0) : by[i];
         x[i] = part * y[i];
@@ -113,12 +101,8 @@ ASP_FN void loop_weights(const asp_shape *k, size_t n, int mask, asp_cv3s wi,
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
         asp_v3 a, b;
-        a.x = wi.x[i];
-        a.y = wi.y[i];
-        a.z = wi.z[i];
-        b.x = ox[i];
-        b.y = oy[i];
-        b.z = oz[i];
+        a = aspi_at(wi.x, wi.y, wi.z, i);
+        b = aspi_at(ox, oy, oz, i);
         x[i] = b.z * aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], sigma_i[i], mask);
     }
 }
@@ -175,12 +159,8 @@ ASP_FN void loop_mixed_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi
     for (i = 0; i < n; i++) {
         asp_v3 a, b;
         asp_real p = pdf[i] <= R(0.0) ? R(1.0) : pdf[i], base, scale;
-        a.x = wi.x[i];
-        a.y = wi.y[i];
-        a.z = wi.z[i];
-        b.x = ox[i];
-        b.y = oy[i];
-        b.z = oz[i];
+        a = aspi_at(wi.x, wi.y, wi.z, i);
+        b = aspi_at(ox, oy, oz, i);
         base = b.z / p;
         scale = R(0.25) * D[i] / p;
         y[i] = aspi_min(a.z, b.z) <= R(0.0) || pdf[i] <= R(0.0) ? R(0.0) : base;
