@@ -12,7 +12,10 @@
 #define student_b ASP_NDF_NAME(_b)
 #define student_point ASP_NDF_NAME(_point)
 #define student_across ASP_NDF_NAME(_across)
+#define student_search ASP_NDF_NAME(_search)
+#define student_start ASP_NDF_NAME(_start)
 #define student_step ASP_NDF_NAME(_step)
+#define student_normal ASP_NDF_NAME(_normal_of)
 /* Polynomial of an even number of coefficients c[first ...]: even and odd powers apart, which halves
  * the chain of dependent operations. Between START and END go the steps, highest first. */
 #define STUDENT_START(t, c, last) \
@@ -179,55 +182,32 @@ ASP_FN asp_v2 student_across(const asp_shape *k, asp_real u)
     return p;
 }
 
-/* One step of Halley's method for the slope along the view. The unknown is r = sqrt q, q = n log(1 +
- * x^2/n), in which the equation's two terms are nearly Gaussian. y(r) = t is solved for
- *     y = turn (c T + side s M) + shift
- * in the form sqrt y = sqrt t, or log y = log t where by_log > 0. */
-ASP_FN asp_real student_step(const asp_shape *k, asp_real r_now, asp_real c, asp_real s,
-                             asp_real side, asp_real turn, asp_real shift, asp_real t, asp_real by_log)
-{
-    asp_real r = aspi_max(r_now, ASP_PRECISION == 64 ? R(1e-12) : R(1e-6));
-    asp_real q = r * r;
-    asp_v2 p = student_point(q, k->table[STUDENT_N], k->table[STUDENT_INVN]);
-    asp_real d = R(STUDENT_A) / (R(STUDENT_A) + p.x);
-#if STUDENT_GAUSSIAN
-    asp_real e = aspi_exp(-q);
-    asp_real ratio = R(1.0), bend = R(-2.0) * r;
-#else
-    asp_real e = aspi_exp(-q * k->table[STUDENT_BETA]);          /* g^(1 - 2n) */
-    asp_real ratio = r / p.x, z = ratio * p.y;
-    asp_real bend = (R(1.0) - z * z) / r - (r + r);
-#endif
-    asp_real ew = e * p.y;                                       /* g^(-2n) */
-    asp_real ss = side * s;
-    asp_real slope = aspi_max(c * p.y + ss * p.x, ASP_PRECISION == 64 ? R(1e-40) : R(1e-12));
-    asp_real value = c * (k->table[STUDENT_T0] * ew * d * student_b(k, d))
-                   + ss * (k->table[STUDENT_M0] * e);
-    asp_real y = aspi_max(turn * value + shift, R(1e-6) * t);
-    /* y'/y, and y''/y' less the part that the logarithm or the root straightens */
-    asp_real y1 = -turn * (R(2.0) * k->table[STUDENT_T0] * ratio * (e * slope) / y + R(1e-20));
-    asp_real y2 = bend + ss * ratio / slope - (by_log > R(0.0) ? y1 : R(0.5) * y1);
-    asp_real x = t / y;
-    asp_real g = by_log > R(0.0) ? -aspi_log(x) : R(2.0) * (R(1.0) - aspi_sqrt(x));
-    asp_real a = g / y1;
-    return r - a / aspi_min(aspi_max(R(1.0) - R(0.5) * a * y2, R(0.4)), R(3.0));
-}
-/* A visible normal by inversion of the exact conditional distributions: first the slope x along the
- * view, whose distribution function is (c F(x) + s M(x))/sigma with F = 1 - T, then the slope across,
- * a t-quantile. (c, s): height and length of the view. Three cases, all solved for r >= 0:
+/* A visible normal is drawn by inversion of the exact conditional distributions: first the slope x
+ * along the view, whose distribution function is (c F(x) + s M(x))/sigma with F = 1 - T, then the
+ * slope across, a t-quantile. (c, s): height and length of the view. Three cases:
  *     left    x = -X <= 0       c T(X) + s M(X) = u1 sigma
  *     right   0 <= x <= c/s     c T(X) - s M(X) + far = (1 - u1) sigma, double zero at X = c/s
- *     below   c < 0, x = -X     c T(X) + s M(X) = u1 far, double zero of far minus it at X = -c/s
- * where far is the projected area of the side turned away. The start solves a quadratic in r, b r +
- * q2 r^2 = log of the left side's ratio to its value at 0. */
-ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+ *     below   c < 0, x = -X     c T(X) + s M(X) = u1 far, or far minus it = (1 - u1) far, double zero
+ *                               at X = -c/s
+ * where far is the projected area of the side turned away. All are y(r) = t for
+ *     y = turn (c T + side s M) + shift
+ * with r = sqrt q, q = n log(1 + X^2/n), in which T and M are nearly Gaussian. */
+typedef struct student_search {
+    asp_real c, s, side, turn, shift, t;
+    asp_real r_view;     /* r of the view itself */
+    asp_real r;
+} student_search;
+
+/* The equation, and a first r: left and right it solves a quadratic, b r + q2 r^2 = log of y's ratio
+ * to its value at 0. */
+ASP_FN student_search student_start(const asp_shape *k, asp_v3 v, asp_real u1)
 {
     const asp_real tiny = ASP_PRECISION == 64 ? R(1e-200) : R(1e-30);
     const asp_real least = ASP_PRECISION == 64 ? R(STUDENT_LEAST_64) : R(STUDENT_LEAST_32);
+    student_search a;
     asp_real vs2 = v.x * v.x + v.y * v.y;
-    asp_real vs = aspi_sqrt(vs2);
     asp_real scale = R(1.0) / aspi_sqrt(vs2 + v.z * v.z);
-    asp_real c = v.z * scale, s = vs * scale, s2 = s * s, c2 = c * c;
+    asp_real c = v.z * scale, s = aspi_sqrt(vs2) * scale, s2 = s * s, c2 = c * c;
     asp_real m0 = k->table[STUDENT_M0], t0 = k->table[STUDENT_T0];
     asp_real invn = k->table[STUDENT_INVN], beta = k->table[STUDENT_BETA];
     /* q where the view itself lies, and the far side's area */
@@ -242,28 +222,24 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
     asp_real d2p = d * d * student_p(k, d);
     asp_real far = g * m0 * aspi_exp(-q_view) * d2p;
     asp_real r_view = aspi_sqrt(q_view);
-    /* the case */
+    /* the case, as numbers, positive where it holds: the compilers vectorise selections on one
+     * comparison, not on its logic */
     asp_real up = aspi_max(c, R(0.0)), sigma = aspi_max(up + far, tiny), sm = s * m0;
     asp_real u = aspi_max(u1, least), rest = aspi_max(R(1.0) - u, least);
     asp_real area = u * sigma;
     asp_real at_left = R(0.5) * up + sm, at_right = aspi_max(sigma - at_left, tiny);
-    /* cases as numbers, positive where they hold: the compilers vectorise selections on one
-     * comparison, not on its logic */
     asp_real below = -c;
     asp_real right = c < R(0.0) ? R(-1.0) : area - at_left;
     asp_real near = c < R(0.0) ? u - R(0.5) : R(-1.0);
     asp_real folded = aspi_max(right, near);
-    asp_real side = right > R(0.0) ? R(-1.0) : R(1.0), turn = near > R(0.0) ? R(-1.0) : R(1.0);
-    asp_real shift = folded > R(0.0) ? far : R(0.0);
-    asp_real target = aspi_max(folded > R(0.0) ? rest * sigma : area, tiny);
-    /* the start */
+    asp_real t = aspi_max(folded > R(0.0) ? rest * sigma : area, tiny);
+    /* the quadratic */
     asp_real at_0 = right > R(0.0) ? at_right : at_left;
-    asp_real full = below > R(0.0) ? R(1.0) / u : at_0 / target;
+    asp_real full = below > R(0.0) ? R(1.0) / u : at_0 / t;
     asp_real l = aspi_max(aspi_log(full), R(0.0)), root = aspi_sqrt(l);
-    asp_real b = R(2.0) * t0 * up / at_0;
     asp_real part = R(0.5) * up / at_left;
     asp_real damp = R(1.0) + R(0.2) * root + (right > R(0.0) ? R(0.0) : l * invn);
-    asp_real b1 = b / damp;
+    asp_real b1 = R(2.0) * t0 * up / (at_0 * damp);
     asp_real b2 = right > R(0.0) ? R(1.0) + R(1.0) / aspi_max(q_view, tiny)
                                  : part + (R(1.0) - part) * beta;
     asp_real r = (l + l) / (b1 + aspi_sqrt(b1 * b1 + R(4.0) * (b2 * l)) + tiny);
@@ -275,40 +251,168 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
     /* left: not less than the M term's own solution; below: from r_view on */
     asp_real w = l + aspi_sqrt(l + l);
     asp_real l2 = aspi_log(below > R(0.0) ? R(1.0) + c2 * w / (R(1.0) + w * R(0.5) * invn / beta)
-                                            : aspi_max(R(1.0) - part, tiny));
+                                          : aspi_max(R(1.0) - part, tiny));
     asp_real q2 = aspi_max((l + l2) / beta, R(0.0)) + (below > R(0.0) ? q_view : R(0.0));
     asp_real r2 = aspi_sqrt(q2);
-    /* right and near: distance from r_view where y is its leading term (r - r_view)^2; closer to it
-     * y would be lost in rounding */
+    /* near the double zero: distance from r_view by y's leading term, (r - r_view)^2; closer to it y
+     * would be lost in rounding */
     asp_real gap = R(0.8) * aspi_sqrt(rest * sigma * d2p * c2
                                       / (beta * aspi_max(far * q_view * (g * g), tiny)));
-    asp_v2 p, across;
-    asp_v3 m;
-    asp_real low = below > R(0.0) ? r_view : R(0.0), high = right > R(0.0) ? r_view : R(1e18);
-    asp_real along, over, ax, ay;
     r = aspi_max(below > R(0.0) ? r_view + (near > R(0.0) ? gap : R(0.0)) : r, r2);
-    r = right > R(0.0) ? aspi_min(r_right, r_view - aspi_min(gap, R(0.5) * r_view)) : r;
-#define STUDENT_REFINE(by_log) \
-    r = student_step(k, r, c, s, side, turn, shift, target, by_log); \
-    r = aspi_min(aspi_max(r, low), high);
-    STUDENT_REFINE(-folded)
-    STUDENT_REFINE(R(0.0))
-    STUDENT_REFINE(R(0.0))
-#if ASP_PRECISION == 64
-    STUDENT_REFINE(R(0.0))
+    a.r = right > R(0.0) ? aspi_min(r_right, r_view - aspi_min(gap, R(0.5) * r_view)) : r;
+    a.c = c;
+    a.s = s;
+    a.side = right > R(0.0) ? R(-1.0) : R(1.0);
+    a.turn = near > R(0.0) ? R(-1.0) : R(1.0);
+    a.shift = folded > R(0.0) ? far : R(0.0);
+    a.t = t;
+    a.r_view = r_view;
+    return a;
+}
+
+/* One step of Halley's method for sqrt y = sqrt t, or where `logs` and there is no double zero for
+ * log y = log t, which starts from further away. Returns the new r. */
+ASP_FN asp_real student_step(const asp_shape *k, student_search a, int logs)
+{
+    const asp_real tiny = ASP_PRECISION == 64 ? R(1e-200) : R(1e-30);
+    asp_real r = aspi_max(a.r, ASP_PRECISION == 64 ? R(1e-12) : R(1e-6));
+    asp_real q = r * r;
+    asp_v2 p = student_point(q, k->table[STUDENT_N], k->table[STUDENT_INVN]);
+    asp_real ss = a.side * a.s, ad = R(STUDENT_A) + p.x;
+    /* what is below rounding would throw the step off */
+    asp_real cw = a.c * p.y, sx = ss * p.x;
+    asp_real noise = (aspi_abs(cw) + aspi_abs(sx)) * (ASP_PRECISION == 64 ? R(0x1p-48) : R(0x1p-20));
+    asp_real slope = aspi_max(cw + sx, noise + (ASP_PRECISION == 64 ? R(1e-40) : R(1e-12)));
+    /* divisions are dear: one for d = A/ad and 1/slope, one for r/p.x and 1/r */
+    asp_real i1 = R(1.0) / (ad * slope);
+    asp_real d = R(STUDENT_A) * slope * i1;
+#if STUDENT_GAUSSIAN
+    asp_real e = aspi_exp(-q);
+    asp_real ratio = R(1.0), bend = R(-2.0) * r;
+#else
+    asp_real e = aspi_exp(-q * k->table[STUDENT_BETA]);          /* g^(1 - 2n) */
+    asp_real i2 = R(1.0) / (r * p.x);
+    asp_real ratio = q * i2, z = ratio * p.y;
+    asp_real bend = (R(1.0) - z * z) * (p.x * i2) - (r + r);
 #endif
-#undef STUDENT_REFINE
-    p = student_point(r * r, k->table[STUDENT_N], invn);
-    across = student_across(k, u2);
-    along = side * p.x * across.y;
-    over = across.x * k->table[STUDENT_Y_WIDTH];
-    /* the view's azimuth; any for a view along the normal */
-    ax = vs > R(0.0) ? v.x / vs : R(1.0);
-    ay = vs > R(0.0) ? v.y / vs : R(0.0);
+    asp_real ew = e * p.y;                                       /* g^(-2n) */
+    asp_real value = a.c * (k->table[STUDENT_T0] * ew * d * student_b(k, d))
+                   + ss * (k->table[STUDENT_M0] * e);
+    asp_real y = aspi_max(a.turn * value + a.shift, R(0.05) * a.t);
+    asp_real x = a.t / y;
+    asp_real by_log = logs ? a.side + a.turn : R(0.0);           /* 2, but 0 with a double zero */
+    asp_real g = R(2.0) * (R(1.0) - aspi_sqrt(x));
+    asp_real half = R(0.25) * g, step, low, high;
+    if (logs) {
+        g = by_log > R(1.0) ? -aspi_log(x) : g;
+        half = by_log > R(1.0) ? R(0.5) * g : half;
+    }
+    /* y' = -turn times the product below, y''/y' = bend + ss ratio/slope; `half` is what the logarithm
+     * or the root adds */
+    step = -a.turn * g * y / (R(2.0) * k->table[STUDENT_T0] * ratio * (e * slope) + tiny);
+    bend = R(1.0) - R(0.5) * (step * (bend + ss * ratio * (ad * i1))) + half;
+    r = r - step / aspi_min(aspi_max(bend, R(0.4)), R(3.0));
+    low = a.c < R(0.0) ? a.r_view : R(0.0);
+    high = a.side < R(0.0) ? a.r_view : R(1e18);
+    return aspi_min(aspi_max(r, low), high);
+}
+
+/* The normal of the two slopes, turned to the view's azimuth; any azimuth for a view along the normal. */
+ASP_FN asp_v3 student_normal(const asp_shape *k, asp_real r, asp_real side, asp_v2 across, asp_real vx,
+                             asp_real vy)
+{
+    asp_v2 p = student_point(r * r, k->table[STUDENT_N], k->table[STUDENT_INVN]);
+    asp_real along = side * p.x * across.y;
+    asp_real over = across.x * k->table[STUDENT_Y_WIDTH];
+    asp_real s2 = vx * vx + vy * vy;
+    asp_real scale = R(1.0) / aspi_sqrt(s2 > R(0.0) ? s2 : R(1.0));
+    asp_real ax = s2 > R(0.0) ? vx * scale : R(1.0), ay = vy * scale;
+    asp_v3 m;
     m.x = along * ax - over * ay;
     m.y = along * ay + over * ax;
     m.z = p.y * across.y;
     return m;
+}
+
+/* Steps needed: the search's error falls from 1e-1 to 1e-4, 1e-10 ... of u1 for gamma > 1.6, one step
+ * later at 1.501. */
+#define STUDENT_MORE_STEPS (ASP_PRECISION == 64 ? 3 : 2)
+
+ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+{
+    student_search a = student_start(k, v, u1);
+    a.r = student_step(k, a, 1);
+    a.r = student_step(k, a, 0);
+    a.r = student_step(k, a, 0);
+#if ASP_PRECISION == 64
+    a.r = student_step(k, a, 0);
+#endif
+    return student_normal(k, a.r, a.side, student_across(k, u2), v.x, v.y);
+}
+
+/* The same over blocks, stage by stage: in one loop each element would be a chain of a thousand
+ * operations, too long for the processor to overlap with the next. */
+#define STUDENT_BLOCK 128
+#define STUDENT_LOAD(a, f, i) \
+    a.c = f[0][i]; a.s = f[1][i]; a.side = f[2][i]; a.turn = f[3][i]; a.shift = f[4][i]; a.t = f[5][i]; \
+    a.r_view = f[6][i]; a.r = f[7][i];
+
+#define ASP_OWN_VISIBLE_N
+ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT vx,
+                                     const asp_real *ASP_RESTRICT vy,
+                                     const asp_real *ASP_RESTRICT vz,
+                                     const asp_real *ASP_RESTRICT u1,
+                                     const asp_real *ASP_RESTRICT u2, asp_real *ASP_RESTRICT mx,
+                                     asp_real *ASP_RESTRICT my, asp_real *ASP_RESTRICT mz)
+{
+    asp_real f[8][STUDENT_BLOCK];
+    size_t from, i, count;
+    int step;
+    for (from = 0; from < n; from += STUDENT_BLOCK) {
+        count = n - from < STUDENT_BLOCK ? n - from : STUDENT_BLOCK;
+        for (i = 0; i < count; i++) {
+            student_search a;
+            asp_v3 v;
+            v.x = vx[from + i];
+            v.y = vy[from + i];
+            v.z = vz[from + i];
+            a = student_start(k, v, u1[from + i]);
+            f[0][i] = a.c;
+            f[1][i] = a.s;
+            f[2][i] = a.side;
+            f[3][i] = a.turn;
+            f[4][i] = a.shift;
+            f[5][i] = a.t;
+            f[6][i] = a.r_view;
+            f[7][i] = a.r;
+        }
+        for (i = 0; i < count; i++) {
+            student_search a;
+            STUDENT_LOAD(a, f, i)
+            f[7][i] = student_step(k, a, 1);
+        }
+        for (step = 0; step < STUDENT_MORE_STEPS; step++)
+            for (i = 0; i < count; i++) {
+                student_search a;
+                STUDENT_LOAD(a, f, i)
+                f[7][i] = student_step(k, a, 0);
+            }
+        for (i = 0; i < count; i++) {
+            asp_v2 across = student_across(k, u2[from + i]);
+            f[0][i] = across.x;
+            f[1][i] = across.y;
+        }
+        for (i = 0; i < count; i++) {
+            asp_v2 across;
+            asp_v3 m;
+            across.x = f[0][i];
+            across.y = f[1][i];
+            m = student_normal(k, f[7][i], f[2][i], across, vx[from + i], vy[from + i]);
+            mx[from + i] = m.x;
+            my[from + i] = m.y;
+            mz[from + i] = m.z;
+        }
+    }
 }
 
 /* r^2 = n ((1 - u1)^(-1/n) - 1) (eq. 16), in homogeneous form: with e = log(1 - u1), the height is
