@@ -141,7 +141,7 @@ static void sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2
     int facet = u1 < share;
     u1 = facet ? u1 / share : (u1 - share) / (R(1.0) - share);
     m = ASPI_CALL(asp_sample_visible)(k, wi, u1, u2);
-    out->wo = facet ? aspi_reflect(wi, m) : aspi_cosine_lobe(u1, u2);
+    out->wo = facet ? aspi_reflect(wi, m) : aspi_cosine_lobe(wi, u1, u2);
     m = aspi_half_vector(wi, out->wo);
     c = aspi_dot(wi, m);
     D = density_of(k, m);

@@ -136,12 +136,12 @@ ASP_FN void loop_choose(size_t n, IN share, IN u1, OUT facet, OUT stretched)
     }
 }
 
-ASP_FN void loop_mixed_direction(size_t n, IN facet, IN u1, IN u2, OUT ox, OUT oy,
+ASP_FN void loop_mixed_direction(size_t n, asp_cv3s wi, IN facet, IN u1, IN u2, OUT ox, OUT oy,
                                  OUT oz)
 {
     size_t i;
     for (i = 0; i < n; i++) {
-        asp_v3 w = aspi_cosine_lobe(u1[i], u2[i]);
+        asp_v3 w = aspi_cosine_lobe(aspi_at(wi.x, wi.y, wi.z, i), u1[i], u2[i]);
         int in = facet[i] > R(0.0);
         ox[i] = aspi_select(in, ox[i], w.x);
         oy[i] = aspi_select(in, oy[i], w.y);
@@ -344,7 +344,7 @@ ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s
     loop_choose(n, share, u1, facet, v1);
     aspi_block_visible(k, n, wi, v1, u2, m);
     loop_reflect(n, wi.x, wi.y, wi.z, mx, my, mz, o[0], o[1], o[2], c);
-    loop_mixed_direction(n, facet, v1, u2, o[0], o[1], o[2]);
+    loop_mixed_direction(n, wi, facet, v1, u2, o[0], o[1], o[2]);
     loop_half(n, wi.x, wi.y, wi.z, o[0], o[1], o[2], mx, my, mz, c);
     aspi_block_density(k, n, cm, D);
     aspi_block_sigma(k, n, wi, si);

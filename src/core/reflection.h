@@ -33,15 +33,15 @@ ASP_FN asp_v3 aspi_half_vector(asp_v3 wi, asp_v3 wo)
     return aspi_normalize(wi);
 }
 
-/* A direction with density cos / pi. */
-ASP_FN asp_v3 aspi_cosine_lobe(asp_real u1, asp_real u2)
+/* A direction with density cos / pi. It does not depend on wi, but a NaN there must come out. */
+ASP_FN asp_v3 aspi_cosine_lobe(asp_v3 wi, asp_real u1, asp_real u2)
 {
     asp_v2 t = aspi_sincos2pi(u2);
-    asp_real r = aspi_sqrt(u1);
+    asp_real r = aspi_sqrt(u1), nothing = (wi.x + wi.y + wi.z) * R(0.0);
     asp_v3 w;
-    w.x = r * t.x;
-    w.y = r * t.y;
-    w.z = aspi_sqrt(R(1.0) - u1);
+    w.x = r * t.x + nothing;
+    w.y = r * t.y + nothing;
+    w.z = aspi_sqrt(R(1.0) - u1) + nothing;
     return w;
 }
 
