@@ -68,29 +68,31 @@ ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
     return (R(1.0) - share) * ggx_area(R(1.0), w, s2) + share * ggx_area(k->shape[1], w, s2);
 }
 
-/* Which scale, and what is left of u1 for it: u and 1 - u. The fine one takes u1 in [0, p) upwards, the
- * rough one [p, 1) downwards, so that they meet at u = 1. There every GGX sampler reaches the horizon,
- * at an azimuth that does not depend on the roughness: the sampler stays continuous. */
+/* Which scale, and what is left of u1 for it: u and v = 1 - u. The fine one takes u1 in [0, p) upwards,
+ * the rough one [p, 1) downwards, so that they meet at u = 1. There every GGX sampler reaches the
+ * horizon, at an azimuth that does not depend on the roughness: the sampler stays continuous. p is a
+ * double in both precisions: near the horizon v keeps only what p and u1 do not share. */
 typedef struct scale { asp_real a, u, v; } scale;
 
-ASP_FN scale choose(const asp_shape *k, asp_real p, asp_real u1)
+ASP_FN scale choose(const asp_shape *k, double p, asp_real u1)
 {
-    asp_real low = aspi_max(p, R(1e-30)), high = aspi_max(R(1.0) - p, R(1e-30));
-    asp_real below = (p - u1) / low, above = (u1 - p) / high;
+    double low = p > 1e-30 ? p : 1e-30, high = 1.0 - p > 1e-30 ? 1.0 - p : 1e-30;
     scale out;
     out.a = u1 < p ? R(1.0) : k->shape[1];
-    out.u = u1 < p ? u1 / low : (R(1.0) - u1) / high;
-    out.v = u1 < p ? below : above;
+    out.u = u1 < p ? (asp_real)(u1 / low) : (asp_real)((1.0 - u1) / high);
+    out.v = u1 < p ? (asp_real)((p - u1) / low) : (asp_real)((u1 - p) / high);
     return out;
 }
 
 /* By what each shows to v; then the spherical cap (Dupuy, Benyoub 2023). */
 ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
 {
-    asp_real share = k->shape[0], s2 = v.x * v.x + v.y * v.y;
-    asp_real fine = (R(1.0) - share) * ggx_area(R(1.0), v.z, s2);
-    asp_real rough = share * ggx_area(k->shape[1], v.z, s2);
-    scale c = choose(k, fine / aspi_max(fine + rough, R(1e-37)), u1);
+    double share = k->shape[0], d2 = (double)v.x * v.x + (double)v.y * v.y;
+    double fine = (1.0 - share) * two_scale_area_64(1.0, v.z, d2);
+    double rough = share * two_scale_area_64(k->shape[1], v.z, d2);
+    double sum = fine + rough;
+    scale c = choose(k, fine / (sum > 1e-300 ? sum : 1e-300), u1);
+    asp_real s2 = v.x * v.x + v.y * v.y;
     asp_real t2 = c.a * c.a * s2;
     asp_real inv = R(1.0) / aspi_sqrt(t2 + v.z * v.z);
     asp_real up = R(1.0) + aspi_abs(v.z) * inv;
@@ -104,7 +106,7 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
 /* tan^2 = a^2 u / (1 - u) */
 ASP_FN asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
 {
-    scale c = choose(k, R(1.0) - k->shape[0], u1);
+    scale c = choose(k, 1.0 - k->shape[0], u1);
     return ggx_normal(c.a, aspi_sqrt(c.u), u2, R(0.0), R(0.0), aspi_sqrt(c.v));
 }
 
