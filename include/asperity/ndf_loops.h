@@ -65,7 +65,8 @@ ASP_CLONES static void ndf_sigma_n(const asp_shape *k, size_t n, const asp_real 
         out[i] = ndf_sigma(k, w[i], s2[i]);
 }
 
-/* A distribution whose formula is long may bring this loop itself, in stages. */
+/* A distribution whose formula is long may bring this loop itself, in stages: it defines
+ * ASP_OWN_VISIBLE_N. */
 #ifndef ASP_OWN_VISIBLE_N
 ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT vx,
                                      const asp_real *ASP_RESTRICT vy,
@@ -98,3 +99,4 @@ ASP_CLONES static void ndf_normal_n(const asp_shape *k, size_t n, const asp_real
         mz[i] = m.z;
     }
 }
+#undef ASP_OWN_VISIBLE_N

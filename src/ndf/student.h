@@ -12,7 +12,10 @@
  *
  * P and B are analytic and of one sign on [0, 1] (their nearest singularity is at x/g = -sqrt n,
  * the far side of the pole d), so that short polynomials carry them: `table` holds these, once per
- * precision. Exact values: one hypergeometric function, theory in docs/student-t.md. */
+ * precision. Exactly, B d is, up to scale, sqrt(n) 2F1(1/2, n; n + 1; 1 - h^2/n) and P d^2 = 2F1(1, n -
+ * 1/2; n + 1; 1 - h^2/n)/(2n), h = x/g, by Pfaff's transformation of the paper's eq. 13; both tend to
+ * the error function's for n -> infinity. Errors of the fits beside rounding, for every n: P 1e-13 and
+ * 4e-8, B 1e-13 and 6e-8, R 1e-13 and 6e-8. */
 #ifndef ASPI_STUDENT_H
 #define ASPI_STUDENT_H
 
