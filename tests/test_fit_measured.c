@@ -33,7 +33,7 @@ static void one(const char *path, const char *name, const char *loss, size_t at)
     if (!CHECK(m != NULL, "%s", m ? "" : asp_error_text(&err, line, sizeof line)))
         return;
     clock_t start = clock();
-    asp_fit_options options = { .loss = loss };
+    asp_fit_options options = { .loss = loss, .starts = 2 };
     if (CHECK(asp_fit(m, &options, &r, &n, &err) == ASP_OK, "%s: no fit", name)) {
         const asp_fit_result *student = find(r, n, "student_t"), *ggx = find(r, n, "ggx"),
                              *beckmann = find(r, n, "beckmann");

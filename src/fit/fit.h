@@ -44,6 +44,7 @@ void aspi_fit_set_free(aspi_fit_set *set);
 typedef struct aspi_loss {
     asp_loss about;
     int power;                                   /* 1: absolute, 2: squared */
+    int linear;                                  /* 1: residuals are linear in the model */
     /* Residuals of n geometries of one channel and their derivatives by the model (NULL: not
      * wanted). `weight` is what `prepare` wrote. */
     void (*residual)(size_t n, const double *model, const double *data, const double *weight,

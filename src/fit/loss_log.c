@@ -24,5 +24,5 @@ static double weight(double cos_i, double cos_o)
 const aspi_loss aspi_loss_log = {
     { "log", "cosine-weighted logarithm",
       "root mean square of log((1 + m cos(theta_i)) / (1 + d cos(theta_i)))" },
-    2, residual, weight, aspi_loss_count
+    2, 0, residual, weight, aspi_loss_count
 };

@@ -31,5 +31,5 @@ static double scale(size_t n, const double *data, const double *w)
 const aspi_loss aspi_loss_nad = {
     { "nad", "normalised absolute difference",
       "sum w |m - d| / sum w d, w = cos(theta_i) cos(theta_o)" },
-    1, residual, weight, scale
+    1, 1, residual, weight, scale
 };

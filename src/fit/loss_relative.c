@@ -24,5 +24,5 @@ static double weight(double cos_i, double cos_o)
 const aspi_loss aspi_loss_relative = {
     { "log_relative", "relative logarithm",
       "root mean square of log((m + 0.001/sr) / (d + 0.001/sr))" },
-    2, residual, weight, aspi_loss_count
+    2, 0, residual, weight, aspi_loss_count
 };

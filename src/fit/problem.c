@@ -153,26 +153,60 @@ static void bounded(double a00, double a01, double a11, double b0, double b1, do
     }
 }
 
-/* One Gauss-Newton step for channel c from x, with the residuals there in p->residual, p->slope. */
+/* The normal equations are summed in lanes, which the compiler can keep side by side: it may not
+ * reorder a sum by itself. */
+#define LANES 4
+enum { A00, A01, A11, B0, B1, SUMS };
+typedef struct lanes { double sum[SUMS][LANES]; } lanes;
+
+static inline void add(lanes *t, int lane, double w, double slope, double specular, double target)
+{
+    double g0 = slope * ASPI_INV_PI, g1 = slope * specular;
+    t->sum[A00][lane] += w * g0 * g0;
+    t->sum[A01][lane] += w * g0 * g1;
+    t->sum[A11][lane] += w * g1 * g1;
+    t->sum[B0][lane] += w * g0 * target;
+    t->sum[B1][lane] += w * g1 * target;
+}
+
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/* One Gauss-Newton step for channel c from x, with the residuals there in p->residual, p->slope. The
+ * weights of the squares are w, or 1/max(|r|, soft) for absolute values, or 1. */
 static void step(const aspi_problem *p, const double *w, double soft, const double x[2],
                  double next[2])
 {
-    double a00 = 0, a01 = 0, a11 = 0, b0 = 0, b1 = 0;
-    int absolute = !w && p->loss->power == 1;
-    for (size_t i = 0; i < p->set->n; i++) {
-        double wi = w ? w[i] : absolute ? 1 / fmax(fabs(p->residual[i]), soft) : 1;
-        double g0 = p->slope[i] * ASPI_INV_PI, g1 = p->slope[i] * p->specular[i];
-        double target = g0 * x[0] + g1 * x[1] - p->residual[i];
-        a00 += wi * g0 * g0;
-        a01 += wi * g0 * g1;
-        a11 += wi * g1 * g1;
-        b0 += wi * g0 * target;
-        b1 += wi * g1 * target;
+    const double *slope = p->slope, *specular = p->specular, *r = p->residual;
+    double x0 = x[0] * ASPI_INV_PI, x1 = x[1], total[SUMS] = { 0 };
+    size_t n = p->set->n, whole = n - n % LANES;
+    int absolute = p->loss->power == 1;
+    lanes t = { { { 0 } } };
+    for (size_t i = 0; i < n; i += LANES) {
+        int count = i < whole ? LANES : (int)(n - whole);
+        double weight[LANES];
+        for (int k = 0; k < count; k++)
+            weight[k] = w ? w[i + k] : absolute ? 1 / larger(fabs(r[i + k]), soft) : 1;
+        if (count == LANES)
+            for (int k = 0; k < LANES; k++)
+                add(&t, k, weight[k], slope[i + k], specular[i + k],
+                    slope[i + k] * (x0 + x1 * specular[i + k]) - r[i + k]);
+        else
+            for (int k = 0; k < count; k++)
+                add(&t, k, weight[k], slope[i + k], specular[i + k],
+                    slope[i + k] * (x0 + x1 * specular[i + k]) - r[i + k]);
     }
-    bounded(a00, a01, a11, b0, b1, p->specular_high, next);
+    for (int s = 0; s < SUMS; s++)
+        for (int k = 0; k < LANES; k++)
+            total[s] += t.sum[s][k];
+    bounded(total[A00], total[A01], total[A11], total[B0], total[B1], p->specular_high, next);
 }
 
-static void improve(aspi_problem *p, int c, double x[2], const double *w, double soft, int rounds)
+/* `enough`: the relative gain of a round below which it stops. */
+static void improve(aspi_problem *p, int c, double x[2], const double *w, double soft, double enough,
+                    int rounds)
 {
     double now, best;
     residuals_of(p, c, x, p->residual, p->slope);
@@ -194,7 +228,7 @@ static void improve(aspi_problem *p, int c, double x[2], const double *w, double
         best = now;
         x[0] = next[0];
         x[1] = next[1];
-        if (gain <= (w || p->loss->power == 2 ? 1e-14 : 1e-8) * best)
+        if (gain <= enough * best)
             break;
     }
 }
@@ -224,8 +258,8 @@ void aspi_problem_colours(aspi_problem *p, aspi_point *at, int rounds)
         residuals_of(p, c, x, p->residual, NULL);
         double before = sum_of(p, p->residual), mean = before / (double)p->set->n + 1e-300;
         if (p->loss->power == 1)         /* coarse to fine: see aspi_polish */
-            improve(p, c, x, NULL, 0.3 * mean, rounds);
-        improve(p, c, x, NULL, 0.003 * mean, rounds);
+            improve(p, c, x, NULL, 0.3 * mean, 1e-5, rounds);
+        improve(p, c, x, NULL, 0.003 * mean, p->loss->power == 1 ? 1e-8 : 1e-14, rounds);
         residuals_of(p, c, x, p->residual, NULL);
         double after = sum_of(p, p->residual);
         if (after < before) {
@@ -244,7 +278,7 @@ void aspi_problem_weighted(aspi_problem *p, aspi_point *at, double *residuals)
         double x[2] = { at->colour[c], at->colour[3 + c] };
         const double *w = p->irls + (size_t)c * n;
         double *r = residuals + (size_t)c * n;
-        improve(p, c, x, w, 0, 40);
+        improve(p, c, x, w, 0, 1e-14, p->loss->linear ? 1 : 40);
         residuals_of(p, c, x, r, NULL);
         for (size_t i = 0; i < n; i++)
             r[i] *= sqrt(w[i]);

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define SIZE 0.02              /* of the first simplex, in b */
-#define FLAT 1e-7              /* relative spread of losses at which it stops */
+#define FLAT 1e-6              /* relative spread of losses at which it stops */
 #define CALLS 90               /* evaluations per dimension at most */
 
 typedef struct simplex {
