@@ -55,6 +55,7 @@ ASP_FN asp_real masking(const asp_shape *k, asp_v3 w, asp_real sigma, int mask)
     asp_real area = aspi_masked(k, w, sigma, mask);
     asp_real g = w.z / (area > R(0.0) ? area : R(1.0));
     g = area == area ? g : area;
+    g = g > R(1.0) ? R(1.0) : g; /* by rounding, where nothing is hidden */
     g = (mask & 15) == ASP_MASK_V_CAVITY && w.z == w.z ? R(1.0) : g;
     return w.z <= R(0.0) ? R(0.0) : g;
 }
