@@ -185,18 +185,23 @@ void aspi_law_sample_visible(aspi_trial *t)
     }
 }
 
-/* Mirror and mixture; the other materials share their samplers. */
+/* Mirror and mixture; the other materials share their samplers. The mixture's diffuse lobe becomes a
+ * thread in the standard slopes of a map that is much narrower one way than the other, too fine for
+ * cells: there the mirror is tried alone. */
 static void each_material(aspi_trial *t, int weights)
 {
     static const int kinds[2] = { 0, ASPI_MATERIALS - 1 };
+    asp_roughness five = asp_map_to_roughness(&t->ndf->map);
     size_t i, tests = 2 * t->view_count;
-    int k;
-    for (k = 0; k < 2; k++)
+    int k, count = five.alpha_x < 50 * five.alpha_y ? 2 : 1;
+    for (k = 0; k < count; k++)
         for (i = 0; i < t->view_count; i++) {
             const char *name;
             asp_material mat = aspi_material(t->ndf, kinds[k], &name);
             sampling s;
             double p;
+            if (!(asp_sigma(t->ndf, t->views[i].w) > 1e-200)) /* no facet to be seen */
+                continue;
             s.ndf = t->ndf;
             s.mat = &mat;
             s.view = &t->views[i];
@@ -272,6 +277,8 @@ void aspi_law_continuity(aspi_trial *t)
         path p;
         const aspi_view *v = &t->views[(size_t)(i / 4) % t->view_count];
         double jump, at;
+        if (!(asp_sigma(t->ndf, v->w) > 1e-200))
+            continue;
         p.sampler = i % 4 > 1;
         p.axis = i % 2;
         p.other = 0.05 + 0.9 * aspi_uniform(t);

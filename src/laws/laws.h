@@ -119,6 +119,7 @@ typedef struct aspi_histogram {
     double edge[ASPI_RINGS - 1];                 /* outer radius of each ring but the last */
     double phi0;
     double count[ASPI_CELLS], sum[ASPI_CELLS], sum2[ASPI_CELLS];
+    double carried[ASPI_CELLS];                  /* samples whose weight is not 0 */
     double density[ASPI_CELLS], value[ASPI_CELLS];  /* integrals of a density and of another value */
 } aspi_histogram;
 
@@ -129,8 +130,7 @@ void aspi_histogram_edges(aspi_histogram *h, double *radii, size_t count, double
 void aspi_histogram_add(aspi_histogram *h, const asp_ndf *ndf, asp_vec3 m, double weight);
 void aspi_histogram_integrate(aspi_histogram *h, const aspi_trial *t, aspi_facet_function *f,
                               const void *context);
-/* p of counts against density, and of weight sums against value (cells with 100 samples or more,
- * without the open cell). */
+/* p of counts against density, and of weight sums against value, the latter without the open cell. */
 double aspi_histogram_count_p(const aspi_histogram *h, double samples);
 double aspi_histogram_weight_p(const aspi_histogram *h, double samples);
 

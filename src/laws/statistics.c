@@ -126,50 +126,108 @@ void aspi_histogram_add(aspi_histogram *h, const asp_ndf *ndf, asp_vec3 m, doubl
     h->count[cell] += 1;
     h->sum[cell] += weight;
     h->sum2[cell] += weight * weight;
+    h->carried[cell] += weight > 0;
 }
 
-/* Over a ring: Gauss's rule in r or, where the ring spans scales, in log r by panels of e^1.5. */
+/* ---- what a cell expects: Gauss's rule in (log r, phi), the rectangle cut in four until the rule
+ * agrees with itself. The line where a visible density ends may cross a cell, and from below the mean
+ * plane all of the density may stand in a corner of one. */
+
+#define RULE 6
+
+typedef struct rectangle { double s0, s1, phi0, phi1, density, value; } rectangle;
+
+typedef struct integrand {
+    const aspi_trial *t;
+    aspi_facet_function *f;
+    const void *context;
+    double node[RULE], weight[RULE], tolerance;
+} integrand;
+
+static void apply_rule(const integrand *q, rectangle *a)
+{
+    int i, j;
+    a->density = a->value = 0;
+    for (i = 0; i < RULE; i++) {
+        double phi = a->phi0 + (a->phi1 - a->phi0) * q->node[i], cx = cos(phi), cy = sin(phi);
+        for (j = 0; j < RULE; j++) {
+            double r = exp(a->s0 + (a->s1 - a->s0) * q->node[j]), d, v, jacobian;
+            asp_vec2 p = aspi_map_slope(&q->t->ndf->map, r * cx, r * cy);
+            asp_vec3 m = aspi_unit(-p.x, -p.y, 1);
+            q->f(q->context, m, &d, &v);
+            jacobian = (m.z * r) * (m.z * r) * m.z * q->weight[i] * q->weight[j];
+            a->density += d * jacobian;
+            a->value += v * jacobian;
+        }
+    }
+    a->density *= q->t->det * (a->s1 - a->s0) * (a->phi1 - a->phi0);
+    a->value *= q->t->det * (a->s1 - a->s0) * (a->phi1 - a->phi0);
+}
+
+static void integrate(const integrand *q, rectangle *a, int depth)
+{
+    rectangle part[4];
+    double sm = 0.5 * (a->s0 + a->s1), pm = 0.5 * (a->phi0 + a->phi1), density = 0, value = 0;
+    int i;
+    for (i = 0; i < 4; i++) {
+        part[i].s0 = i & 1 ? sm : a->s0;
+        part[i].s1 = i & 1 ? a->s1 : sm;
+        part[i].phi0 = i & 2 ? pm : a->phi0;
+        part[i].phi1 = i & 2 ? a->phi1 : pm;
+        apply_rule(q, &part[i]);
+        density += part[i].density;
+        value += part[i].value;
+    }
+    if (depth > 0 && (fabs(density - a->density) > q->tolerance
+                      || fabs(value - a->value) > q->tolerance)) {
+        density = value = 0;
+        for (i = 0; i < 4; i++) {
+            integrate(q, &part[i], depth - 1);
+            density += part[i].density;
+            value += part[i].value;
+        }
+    }
+    a->density = density;
+    a->value = value;
+}
+
 void aspi_histogram_integrate(aspi_histogram *h, const aspi_trial *t, aspi_facet_function *f,
                               const void *context)
 {
-    enum { N = 6 };
-    double node[N], weight[N], inner_density = 0, inner_value = 0;
-    int ring, sector, panel, i, j;
-    aspi_gauss(N, node, weight);
+    integrand q;
+    double inner = 0;
+    int ring, sector, panel;
+    q.t = t;
+    q.f = f;
+    q.context = context;
+    q.tolerance = 0.02 / (double)t->samples; /* a fiftieth of a sample */
+    aspi_gauss(RULE, q.node, q.weight);
     for (ring = 0; ring < ASPI_RINGS - 1; ring++) {
-        double r0 = ring ? h->edge[ring - 1] : 0, r1 = h->edge[ring];
-        double span = ring ? log(r1 / r0) : 0;
-        int panels = ring ? 1 + (int)(span / 1.5) : 1;
+        /* the innermost ring reaches down to where an area is nothing, by panels that double: all
+         * that is seen from far below the mean plane lies at its rim */
+        double s1 = log(h->edge[ring]), s0 = ring ? log(h->edge[ring - 1]) : s1 - 16;
+        int panels = ring ? 1 + (int)((s1 - s0) / 2) : 10;
         for (sector = 0; sector < ASPI_SECTORS; sector++) {
-            double sum = 0, other = 0;
             int cell = ring * ASPI_SECTORS + sector;
-            for (panel = 0; panel < panels; panel++)
-                for (i = 0; i < N; i++)
-                    for (j = 0; j < N; j++) {
-                        double phi = h->phi0 + 2 * ASPI_PI * (sector + node[i]) / ASPI_SECTORS;
-                        double x = (panel + node[j]) / panels, r, step, jacobian, d, v;
-                        asp_vec2 p;
-                        asp_vec3 m;
-                        r = ring ? r0 * exp(span * x) : r1 * x;
-                        step = (ring ? r * span / panels : r1) * weight[i] * weight[j]
-                             * 2 * ASPI_PI / ASPI_SECTORS;
-                        p = aspi_map_slope(&t->ndf->map, r * cos(phi), r * sin(phi));
-                        m = aspi_unit(-p.x, -p.y, 1);
-                        f(context, m, &d, &v);
-                        jacobian = (m.z * r) * m.z * m.z * t->det * step;
-                        sum += d * jacobian;
-                        other += v * jacobian;
-                    }
-            h->density[cell] = sum;
-            h->value[cell] = other;
-            inner_density += sum;
-            inner_value += other;
+            for (panel = 0; panel < panels; panel++) {
+                rectangle a;
+                a.s0 = ring ? s0 + (s1 - s0) * panel / panels
+                            : s1 - (panel < 9 ? ldexp(16, panel - 9) : 16);
+                a.s1 = ring ? s0 + (s1 - s0) * (panel + 1) / panels
+                            : s1 - (panel > 0 ? ldexp(16, panel - 10) : 0);
+                a.phi0 = h->phi0 + 2 * ASPI_PI * sector / ASPI_SECTORS;
+                a.phi1 = h->phi0 + 2 * ASPI_PI * (sector + 1) / ASPI_SECTORS;
+                apply_rule(&q, &a);
+                integrate(&q, &a, 8);
+                h->density[cell] += a.density;
+                h->value[cell] += a.value;
+            }
+            inner += h->density[cell];
         }
     }
     /* what a density does not spend inside, it spends in the open cell */
-    h->density[ASPI_CELLS - 1] = 1 - inner_density;
+    h->density[ASPI_CELLS - 1] = 1 - inner;
     h->value[ASPI_CELLS - 1] = NAN;
-    (void)inner_value;
 }
 
 /* Pearson's statistic. Neighbours that expect fewer than 8 are pooled until they do; what is left at
@@ -195,24 +253,30 @@ double aspi_histogram_count_p(const aspi_histogram *h, double samples)
     return cells > 1 ? aspi_chi_square_p(chi2, cells - 1) : 0;
 }
 
+/* Sums of weights against integrals of eval. Cells are pooled until 100 samples in them carry a
+ * weight: a sum of fewer has no Gaussian spread, and near the horizon most weights are 0. */
 double aspi_histogram_weight_p(const aspi_histogram *h, double samples)
 {
-    double chi2 = 0;
+    double chi2 = 0, carried = 0, sum = 0, sum2 = 0, value = 0;
     int i, cells = 0;
     for (i = 0; i < ASPI_CELLS - 1; i++) {
-        double mean = h->sum[i] / samples;
-        double variance = h->sum2[i] - samples * mean * mean;
-        double d = h->sum[i] - samples * h->value[i];
-        if (!(d == d))
+        double variance, d;
+        carried += h->carried[i];
+        sum += h->sum[i];
+        sum2 += h->sum2[i];
+        value += samples * h->value[i];
+        if (!(value == value) || !(sum == sum))
             return 0;
-        if (h->count[i] < 100 || !(variance > 0)) {
-            /* no sample carries a weight, but eval says that some should */
-            if (h->count[i] >= 100 && samples * h->value[i] > 25)
-                return 0;
+        if (carried < 100 && i < ASPI_CELLS - 2)
             continue;
-        }
+        d = sum - value;
+        variance = sum2 - sum * sum / samples;
+        /* at the end a pool may hold less: then its spread is at least that of 100 mean weights */
+        if (carried < 100)
+            variance = fmax(variance, 100 * (carried > 0 ? sum2 / carried : 1));
         chi2 += d * d / variance;
         cells++;
+        carried = sum = sum2 = value = 0;
     }
     return cells > 0 ? aspi_chi_square_p(chi2, cells) : 1;
 }
