@@ -131,8 +131,8 @@ ASP_FN asp_real aspi_masked(const asp_shape *k, asp_v3 w, asp_real sigma, int ma
 {
     asp_real facing = k->map.tx * w.x + k->map.ty * w.y;
     asp_real wall = sigma + (facing > R(0.0) ? facing : R(0.0));
-    asp_real bound = sigma < w.z ? w.z : sigma;
-    return mask & ASP_MASK_WALL ? wall : bound;
+    asp_real area = mask & ASP_MASK_WALL ? wall : sigma;
+    return area < w.z ? w.z : area; /* with walls it is not less, but for rounding */
 }
 
 /* w.z Lambda, from the area seen from below, sigma(-w) = sigma(w) - (w.z - t.w_xy): nothing cancels

@@ -25,17 +25,13 @@ static size_t read_word(const char *text, size_t size, const char *word, double 
  * point written as the locale wants it. */
 static double slow_number(const char *text, size_t size)
 {
-    char buffer[400];
-    double value = 1.5;
-    char *end;
+    char buffer[512];
     char *point;
-    const char *probe = "1.5";
     if (size >= sizeof buffer)
         size = sizeof buffer - 1;
     memcpy(buffer, text, size);
     buffer[size] = '\0';
-    value = strtod(probe, &end);
-    if (value != 1.5 && (point = strchr(buffer, '.')) != NULL)
+    if (strtod("1.5", NULL) != 1.5 && (point = strchr(buffer, '.')) != NULL)
         *point = ',';
     return strtod(buffer, NULL);
 }

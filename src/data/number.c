@@ -1,6 +1,8 @@
 /* number.c - numbers as text with a '.', whatever the locale says */
 #include "io.h"
 
+#include "core/spec.h"
+
 #include <locale.h>
 #include <math.h>
 #include <stdlib.h>
@@ -61,11 +63,10 @@ static int localised(const char *s, size_t n, char *copy, size_t size)
 
 int aspi_parse_number(const char *text, size_t n, double *out)
 {
-    char copy[LONGEST + 32];
-    if (!localised(text, n, copy, sizeof copy))
-        return 0;
-    double value = strtod(copy, NULL);
-    if (!isfinite(value))
+    size_t point;
+    double value;
+    if (!n || n > LONGEST || !plain_decimal(text, n, &point)
+        || aspi_read_number(text, n, &value) != n || !isfinite(value))
         return 0;
     *out = value;
     return 1;
