@@ -1,0 +1,265 @@
+/* test_laws_catch.c - the laws see what is wrong, and serve a model that the library does not know
+ *
+ * Each row spoils one function of GGX's record in one way and names a law that must break. Laws that
+ * pass everything would fail here. */
+#include "asperity_data.h"
+#include "asperity_ndf.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static asp_model ggx;   /* the sound record */
+
+/* ------------------------------------------------------------------ ways to be wrong */
+
+static double density_more(const asp_ndf *k, double r2, double z2)
+{
+    return 1.00000001 * ggx.f64.density(k, r2, z2);
+}
+
+/* A wrong power in the tail only: what a general test at moderate angles would pass. */
+static double density_tail(const asp_ndf *k, double r2, double z2)
+{
+    double d = ggx.f64.density(k, r2, z2);
+    return r2 > 400 * z2 ? d * sqrt(400 * z2 / r2) : d;
+}
+
+/* Singular at the mean slope, as a patched epsilon would make it. */
+static double density_nan_lost(const asp_ndf *k, double r2, double z2)
+{
+    return r2 == r2 && z2 == z2 ? ggx.f64.density(k, r2, z2) : 0;
+}
+
+static double sigma_more(const asp_ndf *k, double w, double s2)
+{
+    return ggx.f64.sigma(k, w, s2) * (w > 0 ? 1 + 1e-9 * s2 : 1);
+}
+
+/* Right above the mean plane, cancelling below it. */
+static double sigma_cancels(const asp_ndf *k, double w, double s2)
+{
+    (void)k;
+    return 0.5 * (sqrt(w * w + s2) + w);
+}
+
+static double sigma_negative(const asp_ndf *k, double w, double s2)
+{
+    return ggx.f64.sigma(k, w, s2) - (w < 0 ? 1e-9 : 0);
+}
+
+static void visible_as_normal(const asp_ndf *k, double vx, double vy, double vz, double u1,
+                              double u2, double m[3])
+{
+    (void)vx;
+    (void)vy;
+    (void)vz;
+    ggx.f64.normal(k, u1, u2, m);
+}
+
+/* The sampler is fed a direction that is not quite the view: two degrees off. */
+static void visible_turned(const asp_ndf *k, double vx, double vy, double vz, double u1, double u2,
+                           double m[3])
+{
+    ggx.f64.visible(k, vx + 0.035 * vz, vy, vz - 0.035 * vx, u1, u2, m);
+}
+
+static void visible_jumps(const asp_ndf *k, double vx, double vy, double vz, double u1, double u2,
+                          double m[3])
+{
+    double shifted = u1 + 0.37;
+    ggx.f64.visible(k, vx, vy, vz, shifted < 1 ? shifted : shifted - 1, u2, m);
+}
+
+static void normal_half(const asp_ndf *k, double u1, double u2, double m[3])
+{
+    ggx.f64.normal(k, u1, 0.5 * u2, m);
+}
+
+static void normal_end(const asp_ndf *k, double u1, double u2, double m[3])
+{
+    ggx.f64.normal(k, u1, u2, m);
+    m[0] /= u1 > 0.9999999 ? 0 : 1;
+}
+
+static void density_n_other(const asp_ndf *k, size_t n, const double *r2, const double *z2,
+                            double *out)
+{
+    ggx.f64.density_n(k, n, r2, z2, out);
+    out[n - 1] *= 1 + 2e-16;
+}
+
+static float sigma_coarse(const asp_ndff *k, float w, float s2)
+{
+    return ggx.f32.sigma(k, w, s2) * 1.000003f;
+}
+
+static float density_coarse(const asp_ndff *k, float r2, float z2)
+{
+    return ggx.f32.density(k, r2 * 1.000003f, z2);
+}
+
+/* ------------------------------------------------------------------ the table */
+
+typedef struct mistake {
+    const char *what, *law, *spec;
+    void (*spoil)(asp_model *m);
+} mistake;
+
+#define SPOIL(name, member, function) \
+    static void name(asp_model *m) { m->member = function; }
+SPOIL(spoil_density_more, f64.density, density_more)
+SPOIL(spoil_density_tail, f64.density, density_tail)
+SPOIL(spoil_density_nan, f64.density, density_nan_lost)
+SPOIL(spoil_sigma_more, f64.sigma, sigma_more)
+SPOIL(spoil_sigma_cancels, f64.sigma, sigma_cancels)
+SPOIL(spoil_sigma_negative, f64.sigma, sigma_negative)
+SPOIL(spoil_visible_normal, f64.visible, visible_as_normal)
+SPOIL(spoil_visible_jumps, f64.visible, visible_jumps)
+SPOIL(spoil_normal_end, f64.normal, normal_end)
+SPOIL(spoil_density_n, f64.density_n, density_n_other)
+SPOIL(spoil_sigma_coarse, f32.sigma, sigma_coarse)
+SPOIL(spoil_density_coarse, f32.density, density_coarse)
+
+/* The chi-square laws draw in batches: the loops must be wrong in the same way. */
+static void visible_turned_n(const asp_ndf *k, size_t n, const double *vx, const double *vy,
+                             const double *vz, const double *u1, const double *u2, double *mx,
+                             double *my, double *mz)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        double m[3];
+        visible_turned(k, vx[i], vy[i], vz[i], u1[i], u2[i], m);
+        mx[i] = m[0]; my[i] = m[1]; mz[i] = m[2];
+    }
+}
+
+static void normal_half_n(const asp_ndf *k, size_t n, const double *u1, const double *u2, double *mx,
+                          double *my, double *mz)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        double m[3];
+        normal_half(k, u1[i], u2[i], m);
+        mx[i] = m[0]; my[i] = m[1]; mz[i] = m[2];
+    }
+}
+
+static void spoil_visible_turned(asp_model *m)
+{
+    m->f64.visible = visible_turned;
+    m->f64.visible_n = visible_turned_n;
+}
+
+static void spoil_normal_half(asp_model *m)
+{
+    m->f64.normal = normal_half;
+    m->f64.normal_n = normal_half_n;
+}
+
+/* eval and pdf take the density, the sampler knows nothing of it: sample and pdf disagree, and so
+ * do weights and eval. */
+static void density_sharper_n(const asp_ndf *k, size_t n, const double *r2, const double *z2,
+                              double *out)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        out[i] = 1.44 * ggx.f64.density(k, 1.44 * r2[i], z2[i]);
+}
+static double density_sharper(const asp_ndf *k, double r2, double z2)
+{
+    return 1.44 * ggx.f64.density(k, 1.44 * r2, z2);
+}
+static void spoil_density_sharper(asp_model *m)
+{
+    m->f64.density = density_sharper;
+    m->f64.density_n = density_sharper_n;
+}
+
+static const mistake mistakes[] = {
+    { "a density 1e-8 too large", "normalisation", "toy:alpha=0.3", spoil_density_more },
+    { "a tail that falls too fast", "normalisation", "toy:alpha=0.3", spoil_density_tail },
+    { "a tail that falls too fast", "sigma", "toy:alpha=0.3", spoil_density_tail },
+    { "a NaN swallowed", "nan", "toy:alpha=0.3", spoil_density_nan },
+    { "sigma 1e-9 off at grazing", "sigma", "toy:alpha=1", spoil_sigma_more },
+    { "sigma that is not 0 turned over", "sigma_flip", "toy:alpha=0.3", spoil_sigma_negative },
+    { "sigma that cancels below the horizon", "sigma", "toy:alpha=0.001", spoil_sigma_cancels },
+    { "visible normals that are all normals", "batch", "toy:alpha=0.3", spoil_visible_normal },
+    { "a view two degrees off", "sample_visible", "toy:alpha=0.3", spoil_visible_turned },
+    { "a view two degrees off", "sample_bsdf", "toy:alpha=0.3", spoil_visible_turned },
+    { "half of the normals", "sample_normal", "toy:alpha=0.3", spoil_normal_half },
+    { "D and sampler of different roughness", "sample_visible", "toy:alpha=0.3",
+      spoil_density_sharper },
+    { "D and sampler of different roughness", "weight_histogram", "toy:alpha=0.3",
+      spoil_density_sharper },
+    { "D and masking of different roughness", "sigma", "toy:alpha=0.3", spoil_density_sharper },
+    { "a sampler that jumps", "continuity", "toy:alpha=0.3", spoil_visible_jumps },
+    { "infinite as u goes to 1", "finite", "toy:alpha=0.3", spoil_normal_end },
+    { "one element of a batch an ulp off", "batch", "toy:alpha=0.3", spoil_density_n },
+    { "float32 masking 3e-6 off", "float32", "toy:alpha=0.3", spoil_sigma_coarse },
+    { "float32 slopes squared 3e-6 off", "float32", "toy:alpha=0.003", spoil_density_coarse },
+};
+
+static void note(void *context, const asp_law_result *r)
+{
+    asp_law_result *out = (asp_law_result *)context;
+    *out = *r;
+}
+
+static int stop(void *context, double done)
+{
+    (void)done;
+    return ++*(int *)context > 2;
+}
+
+int main(void)
+{
+    const asp_model *table[2] = { NULL, NULL };
+    size_t i, passed = 0, failed = 0, broken = 0;
+    asp_laws_options o = asp_laws_options_default();
+    asp_law_result r;
+    asp_model toy;
+    asp_ndf ndf;
+    asp_error err;
+    int calls = 0, ok;
+    ggx = *asp_find_model(NULL, "ggx");
+    table[0] = &toy;
+    o.samples = 100000;
+    for (i = 0; i < sizeof mistakes / sizeof mistakes[0]; i++) {
+        const mistake *m = &mistakes[i];
+        toy = ggx;
+        toy.name = "toy";
+        toy.alias = NULL;
+        o.only = m->law;
+        memset(&r, 0, sizeof r);
+        ok = asp_ndf_parse(table, m->spec, &ndf, &err) == ASP_OK
+          && asp_laws_check(&ndf, &o, note, &r, &broken, &err) == ASP_OK && broken == 0 && r.passed;
+        if (!ok)
+            printf("  FAILED: the sound model breaks %s: %s\n", m->law, r.where);
+        m->spoil(&toy);
+        ok = ok && asp_ndf_parse(table, m->spec, &ndf, &err) == ASP_OK
+          && asp_laws_check(&ndf, &o, note, &r, &broken, &err) == ASP_OK && broken == 1 && !r.passed;
+        printf("  %-40s %-17s %s %.3g, allowed %.3g\n", m->what, m->law,
+               ok ? "caught" : "FAILED: not caught", r.worst, r.allowed);
+        passed += ok != 0;
+        failed += ok == 0;
+    }
+    /* the errors of asp_laws_check itself */
+    toy = ggx;
+    asp_ndf_parse(table, "ggx:alpha=0.3", &ndf, NULL);
+    o.only = "no_such_law";
+    ok = asp_laws_check(&ndf, &o, NULL, NULL, NULL, &err) == ASP_EUNKNOWN;
+    o.only = NULL;
+    o.samples = 10;
+    ok = ok && asp_laws_check(&ndf, &o, NULL, NULL, NULL, &err) == ASP_EINVAL
+      && strcmp(err.name, "samples") == 0;
+    o.samples = 1000;
+    o.progress = stop;
+    o.context = &calls;
+    ok = ok && asp_laws_check(&ndf, &o, NULL, NULL, NULL, &err) == ASP_ECANCELLED;
+    printf("  unknown law, too few samples, cancelled: %s\n", ok ? "refused" : "FAILED");
+    passed += ok != 0;
+    failed += ok == 0;
+    printf("%zu passed, %zu failed\n", passed, failed);
+    return failed != 0;
+}
