@@ -29,6 +29,7 @@
 #define aspi_log_rest ASP_NAME(aspi_log_rest)
 #define aspi_log_parts ASP_NAME(aspi_log_parts)
 #define aspi_log ASP_NAME(aspi_log)
+#define aspi_log_split ASP_NAME(aspi_log_split)
 #define aspi_log_near ASP_NAME(aspi_log_near)
 #define aspi_log1p ASP_NAME(aspi_log1p)
 #define aspi_log1p_sum ASP_NAME(aspi_log1p_sum)
@@ -226,20 +227,27 @@ ASP_FN asp_real aspi_log_parts(asp_real k, asp_real f)
     return k * R(ASP_LN2_HIGH) + (f - (aspi_log_rest(f) - k * R(ASP_LN2_LOW)));
 }
 
-/* log x for a caller who knows x - 1 better than x: x_less_1 replaces it for x within [sqrt(1/2),
- * sqrt(2)), where the logarithm's zero lies. x positive and normal; anything else gives an
- * unspecified finite number, and a NaN gives a NaN. */
-ASP_FN asp_real aspi_log_near(asp_real x, asp_real x_less_1)
+/* x = 2^k (1 + f) with 1 + f within [sqrt(1/2), sqrt(2)), as .x = k and .y = f. */
+ASP_FN asp_v2 aspi_log_split(asp_real x)
 {
     /* exponent field of x / sqrt(1/2): the mantissa then lies in [sqrt(1/2), sqrt(2)) */
     asp_bits b = aspi_to_bits(x);
     asp_bits biased = (asp_bits)(b - (asp_bits)ASP_SQRT_HALF_BITS
                       + ((asp_bits)ASP_EXPONENT_BIAS << ASP_FRACTION_BITS)) >> ASP_FRACTION_BITS;
-    asp_real k = aspi_from_bits(biased | aspi_to_bits(R(ASP_INT_SHIFT)))
-               - R(ASP_INT_SHIFT + ASP_EXPONENT_BIAS);
     asp_bits m = (asp_bits)(b - ((asp_bits)(biased - (asp_bits)ASP_EXPONENT_BIAS) << ASP_FRACTION_BITS));
-    asp_real f = aspi_from_bits(m) - R(1.0);
-    asp_real y = aspi_log_parts(k, k == R(0.0) ? x_less_1 : f);
+    asp_v2 out;
+    out.x = aspi_from_bits(biased | aspi_to_bits(R(ASP_INT_SHIFT))) - R(ASP_INT_SHIFT + ASP_EXPONENT_BIAS);
+    out.y = aspi_from_bits(m) - R(1.0);
+    return out;
+}
+
+/* log x for a caller who knows x - 1 better than x: x_less_1 replaces it for x within [sqrt(1/2),
+ * sqrt(2)), where the logarithm's zero lies. x positive and normal; anything else gives an
+ * unspecified finite number, and a NaN gives a NaN. */
+ASP_FN asp_real aspi_log_near(asp_real x, asp_real x_less_1)
+{
+    asp_v2 s = aspi_log_split(x);
+    asp_real y = aspi_log_parts(s.x, s.x == R(0.0) ? x_less_1 : s.y);
     return x == x ? y : x;
 }
 

@@ -35,6 +35,8 @@ enum {
     /* the conditional distribution across the view: the same family at m = n + 1/2 */
     STUDENT_Y_N = 14,            /* m, 1/m */
     STUDENT_Y_WIDTH = 16,        /* sqrt(n/m) */
+    STUDENT_INV_BETA = 17,
+    STUDENT_BELOW = 18,          /* 1/(2n - 1) */
     STUDENT_P32 = 32,            /* 14 coefficients of P for float32, */
     STUDENT_B32 = 46,            /* 12 of B, */
     STUDENT_Y32 = 58,            /* 12 of the quantile's R; */

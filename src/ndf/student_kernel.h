@@ -13,6 +13,7 @@
 #define student_point ASP_NDF_NAME(_point)
 #define student_across ASP_NDF_NAME(_across)
 #define student_search ASP_NDF_NAME(_search)
+#define student_rough_log ASP_NDF_NAME(_rough_log)
 #define student_start ASP_NDF_NAME(_start)
 #define student_step ASP_NDF_NAME(_step)
 #define student_normal ASP_NDF_NAME(_normal_of)
@@ -203,6 +204,13 @@ typedef struct student_search {
     asp_real r;
 } student_search;
 
+/* log x within 0.03, relatively close near x = 1; for first guesses. */
+ASP_FN asp_real student_rough_log(asp_real x)
+{
+    asp_v2 m = aspi_log_split(x);
+    return m.x * R(0.69314718) + m.y * (R(1.0) - R(0.42) * m.y);
+}
+
 /* The equation, and a first r: left and right it solves a quadratic, b r + q2 r^2 = log of y's ratio
  * to its value at 0. */
 ASP_FN student_search student_start(const asp_shape *k, asp_v3 v, asp_real u1)
@@ -212,58 +220,65 @@ ASP_FN student_search student_start(const asp_shape *k, asp_v3 v, asp_real u1)
     student_search a;
     asp_real vs2 = v.x * v.x + v.y * v.y;
     asp_real scale = R(1.0) / aspi_sqrt(vs2 + v.z * v.z);
-    asp_real c = v.z * scale, s = aspi_sqrt(vs2) * scale, s2 = s * s, c2 = c * c;
-    asp_real m0 = k->table[STUDENT_M0], t0 = k->table[STUDENT_T0];
-    asp_real invn = k->table[STUDENT_INVN], beta = k->table[STUDENT_BETA];
-    /* q where the view itself lies, and the far side's area */
-    asp_real steep = c2 / aspi_max(s2, ASP_PRECISION == 64 ? R(1e-290) : R(1e-24));
+    asp_real c = v.z * scale, s = aspi_sqrt(vs2) * scale, s2 = s * s, c2 = c * c, h = aspi_abs(c);
+    asp_real m0 = k->table[STUDENT_M0], t0 = k->table[STUDENT_T0], invn = k->table[STUDENT_INVN];
+    /* read here: a table entry inside a selection would be a conditional load */
+    asp_real beta = k->table[STUDENT_BETA], inv_beta = k->table[STUDENT_INV_BETA];
+    asp_real flat = k->table[STUDENT_BELOW];
+    /* q where the view itself lies, and the far side's area, as in ndf_sigma */
+    asp_real den = aspi_max(s2, ASP_PRECISION == 64 ? R(1e-200) : R(1e-24));
+    asp_real g = aspi_sqrt(STUDENT_GAUSSIAN ? den : den + c2 * invn);
+    asp_real ag = R(STUDENT_A) * g, sum = h + ag;
+    asp_real inverse = R(1.0) / (den * sum);
+    asp_real steep = c2 * (sum * inverse), d = ag * (den * inverse);
 #if STUDENT_GAUSSIAN
-    asp_real q_view = steep, g = s;
+    asp_real q_view = steep;
 #else
     asp_real q_view = k->table[STUDENT_N] * aspi_log1p(steep * invn);
-    asp_real g = aspi_sqrt(s2 + c2 * invn);
 #endif
-    asp_real ag = R(STUDENT_A) * g, d = ag / (aspi_abs(c) + ag);
-    asp_real d2p = d * d * student_p(k, d);
-    asp_real far = g * m0 * aspi_exp(-q_view) * d2p;
-    asp_real r_view = aspi_sqrt(q_view);
+    asp_real far0 = g * m0 * aspi_exp(-q_view), far = far0 * (d * d) * student_p(k, d);
+    asp_real r_view = aspi_sqrt(q_view), inv_r_view = R(1.0) / aspi_max(r_view, tiny);
     /* the case, as numbers, positive where it holds: the compilers vectorise selections on one
      * comparison, not on its logic */
-    asp_real up = aspi_max(c, R(0.0)), sigma = aspi_max(up + far, tiny), sm = s * m0;
+    asp_real up = aspi_max(c, R(0.0)), sigma = aspi_max(up + far, tiny);
     asp_real u = aspi_max(u1, least), rest = aspi_max(R(1.0) - u, least);
     asp_real area = u * sigma;
-    asp_real at_left = R(0.5) * up + sm, at_right = aspi_max(sigma - at_left, tiny);
+    asp_real at_left = R(0.5) * up + s * m0, at_right = aspi_max(sigma - at_left, tiny);
     asp_real below = -c;
     asp_real right = c < R(0.0) ? R(-1.0) : area - at_left;
     asp_real near = c < R(0.0) ? u - R(0.5) : R(-1.0);
     asp_real folded = aspi_max(right, near);
     asp_real t = aspi_max(folded > R(0.0) ? rest * sigma : area, tiny);
-    /* the quadratic */
-    asp_real at_0 = right > R(0.0) ? at_right : at_left;
-    asp_real full = below > R(0.0) ? R(1.0) / u : at_0 / t;
-    asp_real l = aspi_max(aspi_log(full), R(0.0)), root = aspi_sqrt(l);
-    asp_real part = R(0.5) * up / at_left;
+    /* the quadratic, both sides times damp^2 */
+    asp_real at_mean = below > R(0.0) ? sigma : at_left;
+    asp_real at_0 = right > R(0.0) ? at_right : at_mean;
+    asp_real inv_0 = R(1.0) / at_0;
+    asp_real l1 = aspi_max(student_rough_log(at_0 / t), R(0.0));
+    asp_real l = near > R(0.0) ? R(1.2) * rest : l1;
+    asp_real root = aspi_sqrt(l);
+    asp_real part = R(0.5) * up * inv_0;
     asp_real damp = R(1.0) + R(0.2) * root + (right > R(0.0) ? R(0.0) : l * invn);
-    asp_real b1 = R(2.0) * t0 * up / (at_0 * damp);
-    asp_real b2 = right > R(0.0) ? R(1.0) + R(1.0) / aspi_max(q_view, tiny)
+    asp_real b = R(2.0) * t0 * up * inv_0, ld = l * damp;
+    asp_real q2 = right > R(0.0) ? R(1.0) + inv_r_view * inv_r_view
                                  : part + (R(1.0) - part) * beta;
-    asp_real r = (l + l) / (b1 + aspi_sqrt(b1 * b1 + R(4.0) * (b2 * l)) + tiny);
+    asp_real r = (ld + ld) / (b + aspi_sqrt(b * b + R(4.0) * (q2 * (ld * damp))) + tiny);
     /* right: bent towards the end of the range */
-    asp_real z = r / aspi_max(r_view, tiny);
+    asp_real z = r * inv_r_view;
     asp_real z1 = aspi_min(z * (R(1.0) + z * (R(0.5) + R(0.6) * z)), R(30.0));
     asp_real z2 = z1 * (R(1.0) + z1 * (R(0.5) + R(1.0 / 6.0) * z1));
-    asp_real r_right = r_view * z2 / (R(1.0) + z2);
+    asp_real r_right = r_view * (z2 / (R(1.0) + z2));
     /* left: not less than the M term's own solution; below: from r_view on */
-    asp_real w = l + aspi_sqrt(l + l);
-    asp_real l2 = aspi_log(below > R(0.0) ? R(1.0) + c2 * w / (R(1.0) + w * R(0.5) * invn / beta)
-                                          : aspi_max(R(1.0) - part, tiny));
-    asp_real q2 = aspi_max((l + l2) / beta, R(0.0)) + (below > R(0.0) ? q_view : R(0.0));
-    asp_real r2 = aspi_sqrt(q2);
+    asp_real w = l + R(1.41421356) * root;
+    asp_real l2 = student_rough_log(below > R(0.0)
+                                    ? R(1.0) + c2 * w / (R(1.0) + w * flat)
+                                    : aspi_max(R(1.0) - part, tiny));
+    asp_real q_low = aspi_max((l + l2) * inv_beta, R(0.0));
+    asp_real r_low = aspi_sqrt(q_low + (below > R(0.0) ? q_view : R(0.0)));
     /* near the double zero: distance from r_view by y's leading term, (r - r_view)^2; closer to it y
      * would be lost in rounding */
-    asp_real gap = R(0.8) * aspi_sqrt(rest * sigma * d2p * c2
-                                      / (beta * aspi_max(far * q_view * (g * g), tiny)));
-    r = aspi_max(below > R(0.0) ? r_view + (near > R(0.0) ? gap : R(0.0)) : r, r2);
+    asp_real gap = R(0.8) * inv_r_view * aspi_sqrt(rest * sigma * c2 * inv_beta
+                                                   / aspi_max(far0 * (g * g), tiny));
+    r = aspi_max(below > R(0.0) ? r_view + (near > R(0.0) ? gap : R(0.0)) : r, r_low);
     a.r = right > R(0.0) ? aspi_min(r_right, r_view - aspi_min(gap, R(0.5) * r_view)) : r;
     a.c = c;
     a.s = s;
@@ -307,7 +322,7 @@ ASP_FN asp_real student_step(const asp_shape *k, student_search a, int logs)
     asp_real x = a.t / y;
     asp_real by_log = logs ? a.side + a.turn : R(0.0);           /* 2, but 0 with a double zero */
     asp_real g = R(2.0) * (R(1.0) - aspi_sqrt(x));
-    asp_real half = R(0.25) * g, step, low, high;
+    asp_real half = R(0.25) * g, step, apart, low, high;
     if (logs) {
         g = by_log > R(1.0) ? -aspi_log(x) : g;
         half = by_log > R(1.0) ? R(0.5) * g : half;
@@ -316,10 +331,14 @@ ASP_FN asp_real student_step(const asp_shape *k, student_search a, int logs)
      * or the root adds */
     step = -a.turn * g * y / (R(2.0) * k->table[STUDENT_T0] * ratio * (e * slope) + tiny);
     bend = R(1.0) - R(0.5) * (step * (bend + ss * ratio * (ad * i1))) + half;
+    /* with a double zero at r_view the distance from it changes by a factor of 4 at most: close to it
+     * y may be all rounding */
+    apart = r - a.r_view;
+    low = a.side + a.turn < R(1.0) ? a.r_view + aspi_min(R(0.25) * apart, R(4.0) * apart)
+                                   : (a.c < R(0.0) ? a.r_view : R(0.0));
+    high = a.side + a.turn < R(1.0) ? a.r_view + aspi_max(R(0.25) * apart, R(4.0) * apart) : R(1e18);
     r = r - step / aspi_min(aspi_max(bend, R(0.4)), R(3.0));
-    low = a.c < R(0.0) ? a.r_view : R(0.0);
-    high = a.side < R(0.0) ? a.r_view : R(1e18);
-    return aspi_min(aspi_max(r, low), high);
+    return aspi_min(aspi_max(r, aspi_max(low, R(0.0))), high);
 }
 
 /* The normal of the two slopes, turned to the view's azimuth; any azimuth for a view along the normal. */
