@@ -4,7 +4,7 @@
  * printed, so that the two cannot disagree. */
 #include "cmd.h"
 #include "asperity_ndf.h"
-#include "core/bsdf.h"
+#include "bsdf/bsdf.h"
 #include "data/measured.h"
 
 #include <math.h>

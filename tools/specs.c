@@ -1,7 +1,7 @@
 /* specs.c - options that are distributions, materials, directions and maskings */
 #include "frame.h"
 #include "asperity_ndf.h"
-#include "core/bsdf.h"
+#include "bsdf/bsdf.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
  *
  * f = F D G2 / (4 cos_i cos_o): Walter et al. 2007, eq. 20; the Ellipsoid NDF paper, section 3. */
 #ifndef ASP_PRECISION
-#include "core/bsdf.h"
+#include "bsdf/bsdf.h"
 
 #define ASP_NDF conductor
 #define ASP_PRECISION 64
@@ -28,7 +28,7 @@ ASP_RECORD asp_bsdf asp_bsdf_conductor = {
 
 #else
 #include "asperity/elementary.h"
-#include "core/bsdf_number.h"
+#include "bsdf/bsdf_number.h"
 
 ASP_FN asp_c3 bsdf_value(const asp_mat *mat, asp_c3 F, asp_real x, asp_real y)
 {

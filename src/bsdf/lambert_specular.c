@@ -3,7 +3,7 @@
  * f = diffuse/pi + specular F D G2 / (4 cos_i cos_o): the Cook-Torrance form that the STD paper fits
  * to measured materials (section 5). Not energy conserving by itself. */
 #ifndef ASP_PRECISION
-#include "core/bsdf.h"
+#include "bsdf/bsdf.h"
 
 #define ASP_NDF lambert_specular
 #define ASP_PRECISION 64
@@ -38,7 +38,7 @@ ASP_RECORD asp_bsdf asp_bsdf_lambert_specular = {
 
 #else
 #include "asperity/elementary.h"
-#include "core/bsdf_number.h"
+#include "bsdf/bsdf_number.h"
 
 ASP_FN asp_c3 bsdf_value(const asp_mat *mat, asp_c3 F, asp_real x, asp_real y)
 {

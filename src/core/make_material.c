@@ -1,6 +1,6 @@
 /* make_material.c - the table of scattering models, and making a material of one */
 #define ASP_PRECISION 64
-#include "core/bsdf.h"
+#include "bsdf/bsdf.h"
 #include "asperity/elementary.h"
 #include "asperity/fresnel.h"
 

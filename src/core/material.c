@@ -2,7 +2,7 @@
  *
  * Read three times like facets.c; the formulas are in reflection.h. */
 #ifndef ASP_PRECISION
-#include "core/bsdf.h"
+#include "bsdf/bsdf.h"
 
 #define ASP_PRECISION 64
 #include "material.c"
@@ -13,7 +13,7 @@
 
 #else
 #include "core/blocks.h"
-#include "core/bsdf_number.h"
+#include "bsdf/bsdf_number.h"
 #include "core/reflection.h"
 
 #ifndef ASPI_MATERIAL_NAMES

@@ -3,7 +3,7 @@
  * Read three times like facets.c; the formulas are in reflection.h, so that element i is bit for bit
  * what the single call gives. */
 #ifndef ASP_PRECISION
-#include "core/bsdf.h"
+#include "bsdf/bsdf.h"
 
 #define ASP_PRECISION 64
 #include "material_batch.c"
@@ -14,7 +14,7 @@
 
 #else
 #include "core/blocks.h"
-#include "core/bsdf_number.h"
+#include "bsdf/bsdf_number.h"
 #include "core/reflection.h"
 
 #ifndef ASPI_MATERIAL_BATCH_NAMES

@@ -2,7 +2,7 @@
 #define ASP_PRECISION 64
 #include "asperity_ndf.h"
 #include "asperity/elementary.h"
-#include "core/spec.h"
+#include "bsdf/spec.h"
 
 static const char slope_keys[] =
     "unknown key; every distribution takes alpha or alpha_x alpha_y, rotation or rho, mean_x mean_y, "

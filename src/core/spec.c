@@ -1,5 +1,5 @@
 /* spec.c - the grammar of specs: name:key=value,key=value with values in parentheses */
-#include "core/spec.h"
+#include "bsdf/spec.h"
 
 #include <math.h>
 #include <stdlib.h>

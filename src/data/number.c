@@ -1,7 +1,7 @@
 /* number.c - numbers as text with a '.', whatever the locale says */
 #include "io.h"
 
-#include "core/spec.h"
+#include "bsdf/spec.h"
 
 #include <locale.h>
 #include <math.h>

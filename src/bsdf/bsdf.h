@@ -5,7 +5,7 @@
 #define ASPI_BSDF_H
 
 #include "asperity_ndf.h"
-#include "core/spec.h"
+#include "bsdf/spec.h"
 
 /* Which Fresnel term; its colours are material.c and material.d. */
 enum {
