@@ -92,7 +92,7 @@ static double beta_fraction(double a, double b, double x)
         c = 1 + e / c;
         delta = d * c;
         h *= delta;
-        if (fabs(delta - 1) < 1e-16)
+        if (fabs(delta - 1) < 4e-16)
             break;
     }
     return h;
@@ -152,9 +152,9 @@ static void check_float(const pair *p)
         else if (want > 1e-30 * s && want > 1e-30)
             deep = larger(deep, e);
     }
-    report("float32 density above 1e-6 of the peak", p->gamma, d_main, 1e-6);
-    report("float32 density below", p->gamma, d_tail, 2e-6);
-    report("float32 sigma, w > 0", p->gamma, up, 1.5e-6);
+    report("float32 density above 1e-6 of the peak", p->gamma, d_main, 6e-7);
+    report("float32 density below", p->gamma, d_tail, 8e-7);
+    report("float32 sigma, w > 0", p->gamma, up, 1e-6);
     report("float32 sigma, w < 0, above 1e-6 s", p->gamma, down, 4e-6);
     report("float32 sigma, w < 0, below", p->gamma, deep, 2.5e-5);
 }
@@ -274,9 +274,9 @@ static void check_visible(const pair *p)
             across_f = larger(across_f, fabs((y > 0 ? 1 - tail(g, y) : tail(g, -y)) - u2));
         }
     }
-    report("visible: distribution along - u1, float64", p->gamma, worst, p->gamma > 100 ? 2e-11 : 2e-12);
+    report("visible: distribution along - u1, float64", p->gamma, worst, 2e-11);
     report("visible: distribution across - u2, float64", p->gamma, across, p->gamma > 100 ? 2e-11 : 1e-12);
-    report("visible: distribution along - u1, float32", p->gamma, worst_f, 1.5e-6);
+    report("visible: distribution along - u1, float32", p->gamma, worst_f, p->gamma < 1.51 ? 3e-6 : 1e-6);
     report("visible: distribution across - u2, float32", p->gamma, across_f, 1e-6);
     report("visible: nothing faces away", p->gamma, hidden, 1e-15);
 }
@@ -563,6 +563,46 @@ static void check_finite(const pair *p)
     report("no NaN, no infinity", p->gamma, bad, 0);
 }
 
+/* The batch loops give the single calls' bits. */
+static void check_batch(const pair *p)
+{
+    double bad = 0;
+    int i, j;
+    for (i = 0; i < BLOCK; i++) {
+        double l;
+        for (j = 0; j < 5; j++)
+            in64[j][i] = j < 3 ? 2 * uniform() - 1 : uniform();
+        l = sqrt(in64[0][i] * in64[0][i] + in64[1][i] * in64[1][i] + in64[2][i] * in64[2][i]);
+        for (j = 0; j < 3; j++)
+            in64[j][i] /= l;
+        for (j = 0; j < 5; j++)
+            in32[j][i] = (float)in64[j][i] * (1 - 0x1p-23f);
+    }
+    p->model->f64.visible_n(&p->k, BLOCK - 3, in64[0], in64[1], in64[2], in64[3], in64[4], out64[0],
+                            out64[1], out64[2]);
+    p->model->f32.visible_n(&p->f, BLOCK - 3, in32[0], in32[1], in32[2], in32[3], in32[4], out32[0],
+                            out32[1], out32[2]);
+    for (i = 0; i < BLOCK - 3; i++) {
+        double m[3];
+        float f[3];
+        p->model->f64.visible(&p->k, in64[0][i], in64[1][i], in64[2][i], in64[3][i], in64[4][i], m);
+        p->model->f32.visible(&p->f, in32[0][i], in32[1][i], in32[2][i], in32[3][i], in32[4][i], f);
+        for (j = 0; j < 3; j++)
+            bad += memcmp(&m[j], &out64[j][i], sizeof m[j]) || memcmp(&f[j], &out32[j][i], sizeof f[j]);
+    }
+    p->model->f64.sigma_n(&p->k, BLOCK, in64[2], in64[3], out64[0]);
+    p->model->f64.density_n(&p->k, BLOCK, in64[3], in64[4], out64[1]);
+    p->model->f32.sigma_n(&p->f, BLOCK, in32[2], in32[3], out32[0]);
+    p->model->f32.density_n(&p->f, BLOCK, in32[3], in32[4], out32[1]);
+    for (i = 0; i < BLOCK; i++) {
+        bad += p->model->f64.sigma(&p->k, in64[2][i], in64[3][i]) != out64[0][i];
+        bad += p->model->f64.density(&p->k, in64[3][i], in64[4][i]) != out64[1][i];
+        bad += p->model->f32.sigma(&p->f, in32[2][i], in32[3][i]) != out32[0][i];
+        bad += p->model->f32.density(&p->f, in32[3][i], in32[4][i]) != out32[1][i];
+    }
+    report("batches give the single calls' bits", p->gamma, bad, 0);
+}
+
 int main(void)
 {
     size_t g;
@@ -576,6 +616,7 @@ int main(void)
         check_visible(&p);
         check_normal(&p);
         check_finite(&p);
+        check_batch(&p);
     }
     check_limits();
     check_law();
