@@ -20,6 +20,43 @@ static const file_row files[] = {
       "student_t" },
 };
 
+/* Values of the golden files that are further off than ten times their own error estimate, and what
+ * they are held to instead. std, line 117: at normal incidence Lambda(wi) = 0, both maskings are
+ * one, and the file's other column (which passes) has that value. ellipsoid: the midpoint rule over
+ * theta_o and phi_o with 2000, 4000 and 8000 times twice as many points, extrapolated; its error
+ * falls by 4.0 each time. */
+typedef struct correction {
+    const char *file;
+    long line;
+    int column;         /* 0 separable, 1 height-correlated */
+    double value, error;
+} correction;
+
+static const correction corrections[] = {
+    { "energy_std.csv", 117, 0, 0.00187852824877702, 1e-14 },
+    { "energy_ellipsoid.csv", 41, 0, 0.9241562356, 1e-10 },
+    { "energy_ellipsoid.csv", 47, 0, 0.5666721444, 1e-10 },
+    { "energy_ellipsoid.csv", 47, 1, 0.5746971536, 1e-10 },
+};
+
+/* The value to compare with and its error estimate. */
+static double reference(const char *file, const golden *g, int column, const char *name,
+                        double *error)
+{
+    size_t i;
+    *error = golden_value(g, "est_err");
+    for (i = 0; i < sizeof corrections / sizeof corrections[0]; i++) {
+        const correction *c = &corrections[i];
+        if (strcmp(c->file, file) == 0 && c->line == g->line && c->column == column) {
+            printf("%s, line %ld, %s: golden %.15g +- %.1e is held to %.12g\n", file, c->line, name,
+                   golden_value(g, name), *error, c->value);
+            *error = c->error;
+            return c->value;
+        }
+    }
+    return golden_value(g, name);
+}
+
 static double optional(const golden *g, const char *name) { return name ? golden_value(g, name) : 0; }
 
 static int has_column(const golden *g, const char *name)
@@ -73,9 +110,10 @@ int main(void)
             }
             for (k = 0; k < 2; k++) {
                 asp_material mat = asp_mirror(&ndf, masks[k]);
-                double doubt, exact = golden_value(&g, columns[k]);
-                double allowed = 10 * golden_value(&g, "est_err") + 1e-9;
-                double found = aspi_albedo(&mat, wi, allowed / 2, &doubt);
+                double doubt, error;
+                double exact = reference(files[i].file, &g, k, columns[k], &error);
+                double allowed = 10 * error + 1e-9;
+                double found = aspi_albedo(&mat, wi, allowed / 20, &doubt);
                 c[k].name = columns[k];
                 golden_note(&c[k], &g, fabs(found - exact), allowed, found, exact);
                 doubted = fmax(doubted, doubt);
