@@ -90,7 +90,8 @@ asp_status asp_fail_range(asp_error *err, const char *name, double value,
 typedef struct asp_map { double m00, m01, m10, m11, tx, ty; } asp_map;
 
 /* alpha_x, alpha_y: [1e-5, 100]. rotation turns the x axis of the roughness towards +y (a
- * counter-clockwise turn by `rotation` radians seen from +z). mean_x, mean_y: |mean| <= 100.
+ * counter-clockwise turn by `rotation` radians seen from +z), |rotation| <= 1e4. |mean_x|, |mean_y|
+ * <= 100.
  * Returns ASP_EINVAL and names the value that is out of range. */
 asp_status asp_map_from_roughness(double alpha_x, double alpha_y, double rotation,
                                   double mean_x, double mean_y, asp_map *out, asp_error *err);
@@ -101,12 +102,14 @@ asp_status asp_map_from_correlation(double alpha_x, double alpha_y, double rho,
 
 /* The Ellipsoid NDF's matrix: A = diag(alpha_x, alpha_y, 1) Rx(theta_x) Ry(theta_y) Rz(theta_z)
  * (Walter et al. 2014, eqs. 2-3). theta_x > 0 tilts the normals to +y, theta_y > 0 to -x, and
- * theta_z turns the distribution by -theta_z. Row-major. |theta_x|, |theta_y| < pi/2. */
+ * theta_z turns the distribution by -theta_z. Row-major. |theta_x|, |theta_y| <= pi/2 (a lobe
+ * that lies on its side is refused when a map is made of A), |theta_z| <= 1e4. */
 asp_status asp_ellipsoid_matrix(double alpha_x, double alpha_y, double theta_x, double theta_y,
                                 double theta_z, double A[9], asp_error *err);
 
 /* The slope map of any invertible A, row-major, of either sign of det A: with S = A^T A, mean slope
- * -(S13, S23)/S33 and scatter S[1:2,1:2]/S33 - mean mean^T. A scales out. */
+ * -(S13, S23)/S33 and scatter S[1:2,1:2]/S33 - mean mean^T. A scales out. Refused: mean slopes
+ * beyond 100, roughness above 100 or below 1e-8, |A n| outside [1e-100, 1e100]. */
 asp_status asp_map_from_matrix(const double A[9], asp_map *out, asp_error *err);
 
 /* The same from the symmetric S = A^T A, row-major; it must be positive definite. */
@@ -211,9 +214,9 @@ asp_vec3 asp_mean_normal(const asp_ndf *ndf);
  *
  * c is the cosine between direction and facet normal, clamped to [0, 1]. Unpolarised reflectance. */
 
-/* eta = interior/exterior > 0. Total internal reflection gives 1; eta = 1 gives 0. */
+/* eta = interior/exterior in (0, 1e4]. Total internal reflection gives 1; eta = 1 gives 0. */
 double asp_fresnel_dielectric(double c, double eta);
-/* Complex index eta + i k relative to the exterior, k >= 0. One division, no complex numbers. */
+/* Complex index eta + i k relative to the exterior, eta in (0, 1e4], k in [0, 1e4]. One division, no complex numbers. */
 double asp_fresnel_conductor(double c, double eta, double k);
 /* f0 + (1 - f0)(1 - c)^5 (Schlick 1994). */
 double asp_fresnel_schlick(double c, double f0);

@@ -21,7 +21,7 @@ extern "C" {
 /* ------------------------------------------------------------------ 1  Errors as text */
 
 /* One line, e.g. `chm.bsdf: byte 219: field 'rgb': shape says 1x8x3x32x32 at byte 559616, the file
- * ends at byte 4096` or `alpha = -1 is outside (0, 100]`. Always terminated; returns buffer. */
+ * ends at byte 4096` or `alpha = -1 is outside [1e-05, 100]`. Always terminated; returns buffer. */
 const char *asp_error_text(const asp_error *err, char *buffer, size_t size);
 
 /* ------------------------------------------------------------------ 2  Measurements */
@@ -208,7 +208,7 @@ asp_measured *asp_fabricate(const asp_fabrication *what, asp_progress *progress,
  *     f_c = diffuse_c / pi + specular_c F(eta) D G2 / (4 cos(theta_i) cos(theta_o)),
  *
  * which is `lambert_specular`: a Lambertian base under isotropic facets (Ribardiere et al. 2017,
- * section 6). diffuse and specular lie in [0, 1] (a facet reflects no more than it receives; the
+ * section 5). diffuse and specular lie in [0, 1] (a facet reflects no more than it receives; the
  * limit of specular is an option), eta in [1.05, 100] is shared by the channels, alpha lies in
  * [0.001, 4]. The same form serves metals: for eta -> 100 the dielectric term F tends to 1 at all angles below 80 degrees, and
  * `specular` is the coloured reflectance. Between the two, eta and specular trade against each other

@@ -92,7 +92,8 @@ asp_status asp_file_write(const char *path, const void *bytes, size_t size, asp_
  * eyes (how far: tests/test_draw_chart.c), and each has a dash pattern of its own for print in grey. */
 
 /* The colour of a distribution (ggx, beckmann, student_t, ellipsoid, phong, torrance_sparrow, abc,
- * sgd, gtr, hyper_cauchy) or of "measured" (black). The name may go on after ':', ',', ' ' or '(' as
+ * sgd, gtr, hyper_cauchy: more than asp_models() has, so that a colour stays a name's) or of "measured"
+ * (black). The name may go on after ':', ',', ' ' or '(' as
  * in a spec. Any other name, or NULL: NULL. */
 const char *asp_colour(const char *name);
 /* For things without a name: eight colours that go round, the first ones most distinct. */
@@ -266,7 +267,7 @@ typedef struct asp_preview {
     const asp_environment *environment;  /* NULL: the studio */
     int      width, height;              /* [1, ASP_IMAGE_SIDE]; 0: 256 */
     int      samples;                    /* per pixel, [1, 65536]; 0: 64; powers of two are best */
-    double   zoom;                       /* sphere's diameter / shorter side; 0: 0.9 */
+    double   zoom;                       /* sphere's diameter / shorter side, up to 1000; 0: 0.9 */
     double   field_of_view;              /* of the sphere, radians [0, 2]; 0: orthographic */
     int      plain;                      /* 0: the environment behind the sphere; 1: `background` */
     asp_rgb  background;

@@ -29,7 +29,10 @@ ASP_FN asp_real aspi_unit_cosine(asp_real c)
 ASP_FN asp_real aspi_fresnel_dielectric(asp_real cosine, asp_real eta)
 {
     asp_real c = aspi_unit_cosine(cosine);
-    asp_real g2 = (eta - R(1.0)) * (eta + R(1.0)) + c * c;
+    /* each form keeps its digits where the other cancels: eta near 1, and eta near 0 */
+    asp_real near = (eta - R(1.0)) * (eta + R(1.0)) + c * c;
+    asp_real small = eta * eta - (R(1.0) - c) * (R(1.0) + c);
+    asp_real g2 = eta < R(0.5) ? small : near;
     asp_real g = aspi_sqrt(g2 < R(0.0) ? R(0.0) : g2);
     asp_real difference = g - c, sum = g + c;
     asp_real p = c * sum - R(1.0), q = c * difference + R(1.0);

@@ -54,9 +54,9 @@ ASP_FN asp_real masking(const asp_shape *k, asp_v3 w, asp_real sigma, int mask)
 {
     asp_real area = aspi_masked(k, w, sigma, mask);
     asp_real g = w.z / (area > R(0.0) ? area : R(1.0));
-    g = area == area ? g : area;
     g = g > R(1.0) ? R(1.0) : g; /* by rounding, where nothing is hidden */
-    g = (mask & 15) == ASP_MASK_V_CAVITY && w.z == w.z ? R(1.0) : g;
+    g = (mask & 15) == ASP_MASK_V_CAVITY ? R(1.0) : g;
+    g = area == area ? g : area;
     return w.z <= R(0.0) ? R(0.0) : g;
 }
 
@@ -64,8 +64,8 @@ ASP_FN asp_real lambda_of(const asp_shape *k, asp_v3 w, asp_real sigma_below, in
 {
     asp_real hidden = aspi_hidden(k, w, sigma_below, mask);
     asp_real l = hidden / (w.z > R(0.0) ? w.z : R(1.0));
-    l = w.z == w.z ? l : w.z;
-    l = (mask & 15) == ASP_MASK_V_CAVITY && w.z == w.z ? R(0.0) : l;
+    l = (mask & 15) == ASP_MASK_V_CAVITY ? R(0.0) : aspi_finite(l);
+    l = hidden + w.z == hidden + w.z ? l : hidden + w.z;
     return w.z <= R(0.0) ? (asp_real)INFINITY : l;
 }
 
@@ -120,7 +120,7 @@ asp_real ASPI_CALL(asp_P22)(const asp_shape *k, asp_real p_x, asp_real p_y)
     m.y = -p_y;
     m.z = R(1.0);
     v = aspi_facet(k, m);
-    return ASPI_OPS(k).density(k, aspi_length2(v), R(1.0)) * k->inv_det;
+    return ASPI_OPS(k).density(k, aspi_steep(aspi_length2(v)), R(1.0)) * k->inv_det;
 }
 
 asp_real ASPI_CALL(asp_sigma)(const asp_shape *k, asp_v3 w)
@@ -252,7 +252,7 @@ ASP_CLONES static void loop_slopes(const asp_shape *k, size_t n, IN p_x, IN p_y,
         m.x = -p_x[i];
         m.y = -p_y[i];
         m.z = R(1.0);
-        r2[i] = aspi_length2(aspi_facet(k, m));
+        r2[i] = aspi_steep(aspi_length2(aspi_facet(k, m)));
         z2[i] = R(1.0);
     }
 }

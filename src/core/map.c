@@ -61,7 +61,9 @@ asp_status asp_map_from_correlation(double alpha_x, double alpha_y, double rho, 
     if (s)
         return s;
     if (!(rho > -1.0 && rho < 1.0)) {
-        asp_fail_range(err, "rho", rho, -1.0, 1, 1.0);
+        asp_fail(err, ASP_EINVAL, "rho", "must lie between -1 and 1, both excluded");
+        if (err)
+            err->value = rho;
         return ASP_EINVAL;
     }
     out->m00 = alpha_x;
@@ -112,8 +114,9 @@ static asp_status map_from_columns(const double a[3], const double b[3], const d
     double xa, xb, length, ra, rb, p[3], q[3];
     asp_map map;
     int i;
-    if (!(c2 > 0.0) || !(c2 < 1e300))
-        return asp_fail(err, ASP_EINVAL, "A", "the third column is zero or not finite: A n must not vanish");
+    if (!(c2 > 1e-200) || !(c2 < 1e200))
+        return asp_fail(err, ASP_EINVAL, "A",
+                        "the third column, A n, must be longer than 1e-100 and shorter than 1e100");
     length = aspi_sqrt(c2);
     xa = (a[0] * c[0] + a[1] * c[1] + a[2] * c[2]) / c2;
     xb = (b[0] * c[0] + b[1] * c[1] + b[2] * c[2]) / c2;

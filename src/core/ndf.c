@@ -52,9 +52,12 @@ asp_status asp_ndf_make(const asp_model *model, const asp_map *map, const double
     asp_ndf ndf;
     asp_status s;
     double det = map->m00 * map->m11 - map->m01 * map->m10;
-    double sum = map->m00 + map->m01 + map->m10 + map->m11 + map->tx + map->ty;
-    if (!(aspi_abs(sum) < 1e6) || !(aspi_abs(det) >= 1e-13))
-        return asp_fail(err, ASP_EINVAL, "map", "the slope map is not finite or not invertible");
+    double largest = aspi_max(aspi_max(aspi_abs(map->m00), aspi_abs(map->m01)),
+                              aspi_max(aspi_abs(map->m10), aspi_abs(map->m11)));
+    double mean = aspi_max(aspi_abs(map->tx), aspi_abs(map->ty));
+    if (!(largest <= 200.0 && mean <= 200.0) || !(aspi_abs(det) >= 1e-16))
+        return asp_fail(err, ASP_EINVAL, "map", "an entry of the slope map is beyond 200 or not a "
+                        "number, or its determinant is below 1e-16");
     memset(&ndf, 0, sizeof ndf);
     ndf.model = model;
     ndf.map = *map;

@@ -129,6 +129,7 @@ asp_status aspi_ndf_parse(const asp_model *const *models, const char *text, size
     asp_map map;
     char name[64];
     size_t i;
+    int has_matrix;
     asp_status s = aspi_spec_cut(text, size, &spec, err);
     if (s)
         return s;
@@ -141,6 +142,9 @@ asp_status aspi_ndf_parse(const asp_model *const *models, const char *text, size
     if (!model)
         return aspi_spec_fail(&spec, text, ASP_EUNKNOWN, name, spec.name_size,
                               "no such distribution (asperity list)", err);
+    has_matrix = aspi_spec_find(&spec, "a11") != NULL;
+    for (i = 0; i < spec.count; i++)
+        spec.items[i].used = 0;
     for (i = 0; i < model->param_count; i++) {
         shape[i] = model->params[i].initial;
         s = aspi_spec_number(&spec, model->params[i].name, &shape[i], NULL, err);
@@ -154,8 +158,11 @@ asp_status aspi_ndf_parse(const asp_model *const *models, const char *text, size
                            err);
     if (!s)
         s = asp_ndf_make(model, &map, shape, out, err);
-    if (s && err && err->position < 0)
+    if (s && err && err->position < 0) {
+        err->position = 0;
+        aspi_spec_blame(&spec, has_matrix ? "a11" : "s11", s, err);
         aspi_spec_blame(&spec, err->name, s, err);
+    }
     return s;
 }
 
@@ -167,17 +174,25 @@ asp_status asp_ndf_parse(const asp_model *const *models, const char *text, asp_n
 
 /* ---- masks */
 
-static const struct { const char *name; int mask; } masks[] = {
-    { "correlated", ASP_MASK_CORRELATED },     { "height_correlated", ASP_MASK_CORRELATED },
-    { "uncorrelated", ASP_MASK_UNCORRELATED }, { "separable", ASP_MASK_UNCORRELATED },
-    { "v_cavity", ASP_MASK_V_CAVITY },         { "min", ASP_MASK_MIN },
-    { "wall", ASP_MASK_WALL }
+static const struct { const char *name; int mask, group; } masks[] = {
+    { "correlated", ASP_MASK_CORRELATED, 1 },     { "height_correlated", ASP_MASK_CORRELATED, 1 },
+    { "uncorrelated", ASP_MASK_UNCORRELATED, 1 }, { "separable", ASP_MASK_UNCORRELATED, 1 },
+    { "v_cavity", ASP_MASK_V_CAVITY, 1 },         { "min", ASP_MASK_MIN, 2 },
+    { "wall", ASP_MASK_WALL, 2 }
 };
+
+static asp_status fail_mask(const char *name, const char *at, const char *reason, asp_error *err)
+{
+    asp_fail(err, ASP_EUNKNOWN, name, reason);
+    if (err)
+        err->position = at - name;
+    return ASP_EUNKNOWN;
+}
 
 asp_status asp_mask_parse(const char *name, int *mask, asp_error *err)
 {
     const char *p = name, *end;
-    int sum = 0;
+    int sum = 0, groups = 0;
     do {
         size_t i, size;
         for (end = p; *end && *end != '+'; end++)
@@ -186,13 +201,13 @@ asp_status asp_mask_parse(const char *name, int *mask, asp_error *err)
         for (i = 0; i < sizeof masks / sizeof *masks; i++)
             if (strlen(masks[i].name) == size && !memcmp(masks[i].name, p, size))
                 break;
-        if (i == sizeof masks / sizeof *masks) {
-            asp_fail(err, ASP_EUNKNOWN, name,
-                     "no such mask: correlated, uncorrelated or v_cavity, and min or wall, joined by +");
-            if (err)
-                err->position = p - name;
-            return ASP_EUNKNOWN;
-        }
+        if (i == sizeof masks / sizeof *masks)
+            return fail_mask(name, p, "no such mask: correlated, uncorrelated or v_cavity, and min or "
+                             "wall, joined by +", err);
+        if (groups & masks[i].group)
+            return fail_mask(name, p, "one of correlated, uncorrelated, v_cavity and one of min, wall",
+                             err);
+        groups |= masks[i].group;
         sum |= masks[i].mask;
         p = end + 1;
     } while (*end);

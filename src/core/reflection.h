@@ -25,12 +25,19 @@
 #define ASPI_REFLECTION_32
 #endif
 
+/* The half vector; zero, which has density 0, where wi and wo cancel. */
 ASP_FN asp_v3 aspi_half_vector(asp_v3 wi, asp_v3 wo)
 {
+    asp_real l2, scale;
     wi.x = wi.x + wo.x;
     wi.y = wi.y + wo.y;
     wi.z = wi.z + wo.z;
-    return aspi_normalize(wi);
+    l2 = wi.x * wi.x + wi.y * wi.y + wi.z * wi.z;
+    scale = R(1.0) / aspi_sqrt(l2 > R(0.0) ? l2 : R(1.0));
+    wi.x = wi.x * scale;
+    wi.y = wi.y * scale;
+    wi.z = wi.z * scale;
+    return wi;
 }
 
 /* A direction with density cos / pi. It does not depend on wi, but a NaN there must come out. */

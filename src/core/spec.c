@@ -1,6 +1,7 @@
 /* spec.c - the grammar of specs: name:key=value,key=value with values in parentheses */
 #include "bsdf/spec.h"
 
+#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,14 +26,17 @@ static size_t read_word(const char *text, size_t size, const char *word, double 
  * point written as the locale wants it. */
 static double slow_number(const char *text, size_t size)
 {
+    const char *mark = localeconv()->decimal_point;
     char buffer[512];
-    char *point;
-    if (size >= sizeof buffer)
-        size = sizeof buffer - 1;
-    memcpy(buffer, text, size);
-    buffer[size] = '\0';
-    if (strtod("1.5", NULL) != 1.5 && (point = strchr(buffer, '.')) != NULL)
-        *point = ',';
+    size_t i, n = 0, marks = strlen(mark);
+    for (i = 0; i < size && n + marks + 1 < sizeof buffer; i++)
+        if (text[i] == '.') {
+            memcpy(buffer + n, mark, marks);
+            n += marks;
+        } else {
+            buffer[n++] = text[i];
+        }
+    buffer[n] = '\0';
     return strtod(buffer, NULL);
 }
 

@@ -313,8 +313,12 @@ asp_status asp_fit(const asp_measured *measured, const asp_fit_options *options,
     size_t n = 0;
     asp_measurement *item = NULL;
     asp_fit_result *out = NULL;
-    if (!status && !(item = asp_fit_geometries(measured, &n, err)))
-        status = measured ? ASP_EFORMAT : ASP_EINVAL;
+    asp_error why;
+    if (!status && !(item = asp_fit_geometries(measured, &n, &why))) {
+        status = why.status;
+        if (err)
+            *err = why;
+    }
     if (!status && !(out = calloc(j->count, sizeof *out)))
         status = asp_fail(err, ASP_ENOMEM, "", "not enough memory for the results");
     if (!status)

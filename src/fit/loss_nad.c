@@ -1,6 +1,6 @@
 /* loss_nad.c - normalised absolute difference
  *
- * Ribardiere, Bringier, Meneveaux, Simonot 2017, section 6 ("normalized absolute distance between
+ * Ribardiere, Bringier, Meneveaux, Simonot 2017, section 5 ("normalized absolute distance between
  * data and the model"); the paper leaves weights open. With w = cos(theta_i) cos(theta_o), f w is
  * the power exchanged between two patches of the sky, and grazing angles do not rule the sum. */
 #include "fit.h"

@@ -2,6 +2,7 @@
  *
  * Every map with the default shape, and every other shape with a few maps that take turns, so that
  * each end of each parameter meets small and large roughness, anisotropy and skew. */
+#include "data/io.h"
 #include "laws/laws.h"
 
 #include <math.h>
@@ -65,11 +66,10 @@ static int append(char *spec, size_t size, const char *text)
 
 static int append_value(char *spec, size_t size, const char *name, double value)
 {
-    char text[96];
-    if (isinf(value))
-        snprintf(text, sizeof text, ",%s=%s", name, value > 0 ? "inf" : "-inf");
-    else
-        snprintf(text, sizeof text, ",%s=%.9g", name, value);
+    char number[ASPI_NUMBER_TEXT] = "inf", text[96];
+    if (!isinf(value))
+        aspi_format_number(value, 9, number);
+    snprintf(text, sizeof text, ",%s=%s", name, number);
     return append(spec, size, text);
 }
 

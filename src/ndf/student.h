@@ -1,7 +1,7 @@
 /* student.h - what the Student-t family shares: the layout of its tables and their preparation
  *
  * The standard surface has slopes of density (1 + r^2/n)^-gamma / pi, n = gamma - 1 (Ribardiere et
- * al. 2017, eq. 6 with sigma = 1); n -> infinity is Beckmann's e^-r^2 / pi. Marginal along one
+ * al. 2017, eq. 11 with sigma = 1); n -> infinity is Beckmann's e^-r^2 / pi. Marginal along one
  * axis: P2(q) proportional to (1 + q^2/n)^(-n - 1/2). With M(x) = int_x^inf q P2 dq and
  * T(x) = int_x^inf P2 dq, both of one elementary factor and one smooth one, x >= 0:
  *

@@ -90,7 +90,7 @@ ASP_FN asp_real student_p(const asp_shape *k, asp_real d)
     return odd * t + even;
 }
 
-/* Density of normals: (1 + r2/(n z2))^-gamma / (pi z2^2) (Ribardiere et al. 2017, eqs. 5-6).
+/* Density of normals: (1 + r2/(n z2))^-gamma / (pi z2^2) (Ribardiere et al. 2017, eq. 11).
  * z2 below 1e-18 (float32) or 1e-150 counts as that, and a density whose power is below e^-87 or e^-708
  * is 0. Relative error 5e-7 (float32; 8e-7 in the far tail) and 1e-15 (1 + |log of the power|). */
 ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)

@@ -8,7 +8,7 @@
  *     integral of tau^(n-1) e^-tau / Gamma(n) * tau/(pi n alpha^2) exp(-tau p^2/(n alpha^2)) dtau
  *         = (1 + p^2/(n alpha^2))^-gamma / (pi alpha^2)
  *
- * is the Student's t-distribution of STD (Ribardiere et al. 2017, eq. 7 in slopes). */
+ * is the Student's t-distribution of STD (Ribardiere et al. 2017, eq. 11). */
 #include "core/rng.h"
 #include "surface/surface.h"
 

@@ -133,7 +133,7 @@ static void make_column(const aspi_counts *counts, int j, int k, const int ends[
                         column *col)
 {
     const aspi_cell *cells = column_cells(counts, j, k);
-    double rays = (double)counts->rays;
+    double rays = (double)(counts->rays - counts->lost);
     pending p = { 0 }, last = { 0 };
     col->n = 0;
     for (int i = 0; i < ASPI_CELLS_H; ++i) {
