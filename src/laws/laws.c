@@ -54,7 +54,7 @@ static const aspi_law_row rows[] = {
     { { "continuity", "samples are continuous in (u1, u2), and periodic or not, never jump",
         "stratification survives", "absolute" }, aspi_law_continuity, 2 },
     { { "float32", "float32 agrees with float64 at the same float32 inputs",
-        "2e-6, and 1e-4 below 1e-6 of the peak", "of what is allowed" }, aspi_law_float32, 4 },
+        "2e-6, and 1e-4 below 1e-6 of the peak", "relative" }, aspi_law_float32, 4 },
     { { "batch", "a batch gives the bits of the single calls", "asperity.h, section 8",
         "differing results" }, aspi_law_batch, 2 },
     { { "finite", "finite unit vectors never give NaN or infinity, nor u at its ends",
