@@ -15,7 +15,7 @@
  * precision. Exactly, B d is, up to scale, sqrt(n) 2F1(1/2, n; n + 1; 1 - h^2/n) and P d^2 = 2F1(1, n -
  * 1/2; n + 1; 1 - h^2/n)/(2n), h = x/g, by Pfaff's transformation of the paper's eq. 13; both tend to
  * the error function's for n -> infinity. Errors of the fits beside rounding, for every n: P 1e-13 and
- * 4e-8, B 1e-13 and 6e-8, R 1e-13 and 6e-8. */
+ * 2e-7, B 1e-13 and 2e-8, R 1e-13 and 6e-8. */
 #ifndef ASPI_STUDENT_H
 #define ASPI_STUDENT_H
 
@@ -37,7 +37,7 @@ enum {
     STUDENT_Y_WIDTH = 16,        /* sqrt(n/m) */
     STUDENT_INV_BETA = 17,
     STUDENT_BELOW = 18,          /* 1/(2n - 1) */
-    STUDENT_P32 = 32,            /* 14 coefficients of P for float32, */
+    STUDENT_P32 = 32,            /* 12 coefficients of P for float32, */
     STUDENT_B32 = 46,            /* 12 of B, */
     STUDENT_Y32 = 58,            /* 12 of the quantile's R; */
     STUDENT_P64 = 72,            /* 24 of P for float64, */

@@ -83,8 +83,7 @@ ASP_FN asp_real student_p(const asp_shape *k, asp_real d)
     STUDENT_STEP5(c, 0)
 #else
     const asp_real *c = k->table + STUDENT_P32;
-    STUDENT_START(t, c, 13)
-    STUDENT_STEP(c, 10)
+    STUDENT_START(t, c, 11)
     STUDENT_STEP5(c, 0)
 #endif
     return odd * t + even;
@@ -112,9 +111,8 @@ ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
     asp_real g = aspi_sqrt(STUDENT_GAUSSIAN ? den : den + w2 * k->table[STUDENT_INVN]);
     asp_real ag = R(STUDENT_A) * g;
     asp_real sum = h + ag;
-    /* one division for two quotients */
-    asp_real inverse = R(1.0) / (den * sum);
-    asp_real d = ag * (den * inverse), r = sum * inverse;
+    /* two divisions: one for both would make the power wait for the root */
+    asp_real d = ag / sum, r = R(1.0) / den;
     asp_real tail = student_decay(k, STUDENT_N, w2 * r) * (d * d) * student_p(k, d)
                   * (g * k->table[STUDENT_M0]);
     return aspi_max(w, R(0.0)) + (s2 > R(0.0) ? tail : R(0.0));

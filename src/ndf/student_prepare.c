@@ -185,7 +185,7 @@ void aspi_student_prepare(asp_ndf *out, double n_wanted)
     t[STUDENT_INV_BETA] = n / (n - 0.5);
     t[STUDENT_BELOW] = 1 / (2 * n - 1);
     student_nodes(n, t[STUDENT_M0], p, b);
-    student_coefficients(p, 14, t + STUDENT_P32);
+    student_coefficients(p, 12, t + STUDENT_P32);
     student_coefficients(p, 24, t + STUDENT_P64);
     student_coefficients(b, 12, t + STUDENT_B32);
     student_coefficients(b, 24, t + STUDENT_B64);
