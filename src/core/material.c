@@ -127,8 +127,9 @@ ASP_FN void sample_pure(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2,
     out->wo.y = s.wo_y;
     out->wo.z = s.wo_z;
     out->pdf = aspi_lobe_density(wi.z, s.density, s.sigma_i);
-    x = s.wo_z * aspi_facet_part(k, wi, out->wo, s.m_z, s.cosine, s.sigma_i, s.sigma_o, s.sigma_i,
-                            mat->mask);
+    x = aspi_above(s.wo_z)
+      * aspi_facet_part(k, wi, out->wo, s.m_z, s.cosine, s.sigma_i, s.sigma_o, s.sigma_i,
+                        mat->mask);
     value_of(mat, s.cosine, x, x, &out->weight);
 }
 
@@ -148,8 +149,8 @@ static void sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2
     out->pdf = aspi_mixed_density(wi.z, out->wo.z, aspi_lobe_density(wi.z, D, sigma_i), share);
     y = aspi_min(wi.z, out->wo.z) <= R(0.0) || out->pdf <= R(0.0) ? R(0.0) : out->wo.z / out->pdf;
     scale = out->pdf <= R(0.0) ? R(0.0) : R(0.25) * D / out->pdf;
-    x = out->wo.z * aspi_facet_part(k, wi, out->wo, m.z, c, sigma_i, sigma_of(k, out->wo), scale,
-                              mat->mask);
+    x = aspi_above(out->wo.z)
+      * aspi_facet_part(k, wi, out->wo, m.z, c, sigma_i, sigma_of(k, out->wo), scale, mat->mask);
     value_of(mat, c, x, y, &out->weight);
 }
 

@@ -103,7 +103,8 @@ ASP_FN void loop_weights(const asp_shape *k, size_t n, int mask, asp_cv3s wi,
         asp_v3 a, b;
         a = aspi_at(wi.x, wi.y, wi.z, i);
         b = aspi_at(ox, oy, oz, i);
-        x[i] = b.z * aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], sigma_i[i], mask);
+        x[i] = aspi_above(b.z)
+             * aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], sigma_i[i], mask);
     }
 }
 
@@ -165,7 +166,8 @@ ASP_FN void loop_mixed_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi
         scale = R(0.25) * D[i] / p;
         y[i] = aspi_min(a.z, b.z) <= R(0.0) || pdf[i] <= R(0.0) ? R(0.0) : base;
         scale = pdf[i] <= R(0.0) ? R(0.0) : scale;
-        x[i] = b.z * aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], scale, mask);
+        x[i] = aspi_above(b.z)
+             * aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], scale, mask);
     }
 }
 

@@ -10,6 +10,7 @@
 
 #ifndef ASPI_REFLECTION_NAMES
 #define ASPI_REFLECTION_NAMES
+#define aspi_above ASP_NAME(aspi_above)
 #define aspi_half_vector ASP_NAME(aspi_half_vector)
 #define aspi_cosine_lobe ASP_NAME(aspi_cosine_lobe)
 #define aspi_facet_part ASP_NAME(aspi_facet_part)
@@ -24,6 +25,9 @@
 #else
 #define ASPI_REFLECTION_32
 #endif
+
+/* A cosine, 0 below the horizon. */
+ASP_FN asp_real aspi_above(asp_real z) { return z < R(0.0) ? R(0.0) : z; }
 
 /* The half vector; zero, which has density 0, where wi and wo cancel. */
 ASP_FN asp_v3 aspi_half_vector(asp_v3 wi, asp_v3 wo)
@@ -71,8 +75,7 @@ ASP_FN asp_real aspi_lobe_density(asp_real ci, asp_real D, asp_real sigma_i)
 
 ASP_FN asp_real aspi_mixed_density(asp_real ci, asp_real co, asp_real lobe, asp_real share)
 {
-    asp_real up = co < R(0.0) ? R(0.0) : co;
-    asp_real p = share * lobe + (R(1.0) - share) * (up * R(1.0 / ASP_PI));
+    asp_real p = share * lobe + (R(1.0) - share) * (aspi_above(co) * R(1.0 / ASP_PI));
     return ci <= R(0.0) ? R(0.0) : p;
 }
 #endif
