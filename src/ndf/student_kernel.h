@@ -226,9 +226,8 @@ ASP_FN student_search student_start(const asp_shape *k, asp_v3 v, asp_real u1)
     /* q where the view itself lies, and the far side's area, as in ndf_sigma */
     asp_real den = aspi_max(s2, ASP_PRECISION == 64 ? R(1e-200) : R(1e-24));
     asp_real g = aspi_sqrt(STUDENT_GAUSSIAN ? den : den + c2 * invn);
-    asp_real ag = R(STUDENT_A) * g, sum = h + ag;
-    asp_real inverse = R(1.0) / (den * sum);
-    asp_real steep = c2 * (sum * inverse), d = ag * (den * inverse);
+    asp_real ag = R(STUDENT_A) * g;
+    asp_real steep = c2 / den, d = ag / (h + ag);
 #if STUDENT_GAUSSIAN
     asp_real q_view = steep;
 #else
@@ -296,24 +295,22 @@ ASP_FN asp_real student_step(const asp_shape *k, student_search a, int logs)
     asp_real r = aspi_max(a.r, ASP_PRECISION == 64 ? R(1e-12) : R(1e-6));
     asp_real q = r * r;
     asp_v2 p = student_point(q, k->table[STUDENT_N], k->table[STUDENT_INVN]);
-    asp_real ss = a.side * a.s, ad = R(STUDENT_A) + p.x;
+    asp_real ss = a.side * a.s;
     /* far out W only leads to subnormal numbers, which are slow */
     asp_real pw = p.y < (ASP_PRECISION == 64 ? R(1e-150) : R(1e-18)) ? R(0.0) : p.y;
     /* what is below rounding would throw the step off */
     asp_real cw = a.c * pw, sx = ss * p.x;
     asp_real noise = (aspi_abs(cw) + aspi_abs(sx)) * (ASP_PRECISION == 64 ? R(0x1p-48) : R(0x1p-20));
     asp_real slope = aspi_max(cw + sx, noise + (ASP_PRECISION == 64 ? R(1e-40) : R(1e-12)));
-    /* divisions are dear: one for d = A/ad and 1/slope, one for r/p.x and 1/r */
-    asp_real i1 = R(1.0) / (ad * slope);
-    asp_real d = R(STUDENT_A) * slope * i1;
+    asp_real d = R(STUDENT_A) / (R(STUDENT_A) + p.x);
 #if STUDENT_GAUSSIAN
     asp_real e = aspi_exp(-q);
     asp_real ratio = R(1.0), bend = R(-2.0) * r;
 #else
     asp_real e = aspi_exp(-q * k->table[STUDENT_BETA]);          /* g^(1 - 2n) */
-    asp_real i2 = R(1.0) / (r * p.x);
-    asp_real ratio = q * i2, z = ratio * pw;
-    asp_real bend = (R(1.0) - z * z) * (p.x * i2) - (r + r);
+    asp_real inverse = R(1.0) / (r * p.x);                       /* for r/p.x and 1/r */
+    asp_real ratio = q * inverse, z = ratio * pw;
+    asp_real bend = (R(1.0) - z * z) * (p.x * inverse) - (r + r);
 #endif
     asp_real ew = e * pw;                                       /* g^(-2n) */
     asp_real value = a.c * (k->table[STUDENT_T0] * ew * d * student_b(k, d))
@@ -330,7 +327,7 @@ ASP_FN asp_real student_step(const asp_shape *k, student_search a, int logs)
     /* y' = -turn times the product below, y''/y' = bend + ss ratio/slope; `half` is what the logarithm
      * or the root adds */
     step = -a.turn * g * y / (R(2.0) * k->table[STUDENT_T0] * ratio * (e * slope) + tiny);
-    bend = R(1.0) - R(0.5) * (step * (bend + ss * ratio * (ad * i1))) + half;
+    bend = R(1.0) - R(0.5) * (step * (bend + ss * ratio / slope)) + half;
     /* with a double zero at r_view the distance from it changes by a factor of 4 at most: close to it
      * y may be all rounding */
     apart = r - a.r_view;
