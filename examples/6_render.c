@@ -10,7 +10,7 @@
 int main(void)
 {
     static const char *const specs[3] = {
-        "conductor:metal=Cu,ndf=(student_t:alpha=0.15,gamma=1.7)",
+        "conductor:metal=Cu,ndf=(student_t:alpha=0.15,gamma=1.55)",
         "conductor:metal=Cu,ndf=(ggx:alpha=0.15)",
         "conductor:metal=Cu,ndf=(beckmann:alpha=0.15)"
     };
