@@ -168,7 +168,8 @@ asp_status asp_ndf_parse(const asp_model *const *models, const char *spec, asp_n
 typedef enum asp_mask {
     ASP_MASK_CORRELATED = 0,    /* G2 = 1/(1 + Lambda_i + Lambda_o): height-correlated Smith */
     ASP_MASK_UNCORRELATED = 1,  /* G2 = G1(i) G1(o): the Ellipsoid and STD papers */
-    ASP_MASK_V_CAVITY = 2,      /* Torrance-Sparrow's grooves; knows nothing of the distribution */
+    ASP_MASK_V_CAVITY = 2,      /* Torrance-Sparrow's grooves; knows nothing of the distribution, and
+                                   on a skewed surface may reflect more than falls on it */
     ASP_MASK_MIN = 0,           /* skewed surfaces: G1 = min(1, w.z/sigma), Walter eq. 6 */
     ASP_MASK_WALL = 16          /* skewed surfaces: vertical walls close the surface; exact, no min */
 } asp_mask;

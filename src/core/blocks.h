@@ -9,7 +9,8 @@
 
 #ifndef ASPI_BLOCKS_ONCE
 #define ASPI_BLOCKS_ONCE
-#define ASPI_BLOCK 256
+/* About twenty arrays are in use at a time: 20 KB. */
+#define ASPI_BLOCK (ASP_PRECISION == 64 ? 128 : 256)
 #define aspi_loop_density_in ASP_NAME(aspi_loop_density_in)
 #define aspi_loop_density_out ASP_NAME(aspi_loop_density_out)
 #define aspi_loop_view ASP_NAME(aspi_loop_view)
