@@ -318,7 +318,8 @@ ASP_FN asp_real student_step(const asp_shape *k, student_search a, int logs)
     asp_real y = aspi_max(a.turn * value + a.shift, R(0.05) * a.t);
     asp_real x = a.t / y;
     asp_real by_log = logs ? a.side + a.turn : R(0.0);           /* 2, but 0 with a double zero */
-    asp_real g = R(2.0) * (R(1.0) - aspi_sqrt(x));
+    /* 2 (1 - sqrt x), but y - t is exact in the end */
+    asp_real g = R(2.0) * (y - a.t) / (y + y * aspi_sqrt(x));
     asp_real half = R(0.25) * g, step, apart, low, high;
     if (logs) {
         g = by_log > R(1.0) ? -aspi_log(x) : g;
