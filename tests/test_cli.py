@@ -42,6 +42,7 @@ def help_texts():
                       % (name, word))
         run(name, "--nonesuch", status=2, says=["'nonesuch'", "known: "])
     check(run("--version", status=0).stdout.startswith("asperity 0."), "version")
+    run("--version", "x", status=2, says=["'x'"])
     check(subprocess.run([COMMAND], capture_output=True).returncode == 2, "no subcommand")
     page = os.path.join(SOURCE, "docs", "commands.md")
     now = run("help", "--markdown", status=0).stdout
@@ -71,7 +72,9 @@ def usage_errors():
     run("eval", "D", "--ndf", "ggx:alpha=(1", status=2)
     run("eval", "D", "--ndf", "", status=2, says=["--ndf"])
     run("eval", "D", "--ndf", "student_t:alpha=0.3,gamma=1.5", status=2,
-        says=["gamma = 1.5", "(1.5, inf)"])
+        says=["gamma = 1.5", "(1.5, inf]"])
+    run("eval", "D", "--ndf", "ellipsoid:alpha=0.2,theta_x=1.5708", status=2,
+        says=["1.5708 is", ", 1.570796]"])
     run("eval", "D", "--ndf", "ggx", "--mask", "vcavity", status=2, says=["vcavity", "v_cavity"])
     run("eval", "D", "--ndf", "ggx", "--precision", "f16", status=2, says=["'f16'", "f64|f32"])
     run("eval", "brdf", "--material", "conducter:metal=Au", status=2,
@@ -95,6 +98,16 @@ def usage_errors():
     run("plot", "brdf", "--ndf", "ggx", "-i", "30,95", "-o", "x.svg", status=2,
         says=["95", "[0, 90)"])
     run("plot", "--ndf", "ggx", "--csv", "-o", "x.csv", status=2)
+    for name in ("x.png", "x", "x.svg.pdf"):
+        run("plot", "--ndf", "ggx", "-o", name, status=2, says=[name, ".svg"])
+    run("render", "--ndf", "ggx", "-o", "x.png", "--float", status=2, says=["x.png", ".exr"])
+    for name in ("a,b", "a;b", "a\tb", 'a"b', "a\nb", "a\rb", "a" * 101):
+        run("eval", "D", "--ndf", "ggx", "--as", name, stdin="mx,my,mz\n0,0,1\n", status=2,
+            says=["--as"])
+    for words in (["eval", "D", "--ndf"], ["check"]):
+        run(*words, "conductor:metal=Au", status=2,
+            says=["'conductor'", "scattering model", "--material", "ggx", "student_t"])
+        run(*words, "nothing", status=2, says=["'nothing'", "known: ggx"])
     run("render", "--ndf", "ggx", status=2, says=["--output"])
     run("render", "--ndf", "ggx", "-o", "x.gif", status=2, says=["x.gif", ".png, .exr or .pfm"])
     run("render", "--ndf", "ggx", "-o", "x.png", "--size", "0", status=2,
@@ -255,6 +268,9 @@ def eval_read_back():
     check(float(values[1]["P22"]) == 0, "P22 of a steep slope")
     crlf = run("eval", "D", "--ndf", "ggx", stdin="\ufeffmx\t my\tmz\r\n0\t0\t 1 \r\n", status=0)
     check(len(crlf.stdout.splitlines()) == 2, "byte order mark, tabs, CR LF")
+    check(crlf.stdout.startswith("mx\t"), "the byte order mark is copied: %r" % crlf.stdout[:8])
+    aside = run("eval", "D", "--ndf", "ggx", stdin="\ufeff# a\nmx,my,mz\n0,0,1\n", status=0)
+    check(aside.stdout.startswith("# a\n"), "a comment behind a byte order mark")
 
 
 def eval_bad_rows():
@@ -285,7 +301,14 @@ def eval_bad_rows():
     bad("mx,my,mz\n0,\x000,1\n", "line 2", "zero byte")
     bad("mx;my;mz\n0,5;0;1\n", "'0,5'")
     run("eval", "D", "--ndf", "ggx", "none.csv", status=1, says=["none.csv"])
-    run("eval", "D", "--ndf", "ggx", ".", status=1)
+    run("eval", "D", "--ndf", "ggx", ".", status=1, says=[".: cannot read: Is a directory"])
+    wide = "px,py\n0,0\n0,-1e39\n"
+    run("eval", "P22", "--ndf", "ggx", "--precision", "f32", stdin=wide, status=1,
+        says=["line 3", "'py'", "-1e+39", "3.40282347e+38]", "float32"])
+    run("eval", "P22", "--ndf", "ggx", stdin=wide, status=0)
+    steep = run("eval", "P22", "--ndf", "ggx", "--precision", "f32",
+                stdin="mx,my,mz\n1,0,1e-60\n", status=0)
+    check(float(rows(steep.stdout)[0]["P22"]) == 0, "P22 of a slope beyond float32")
     f32 = run("eval", "D", "--ndf", "ggx", "--precision", "f32", stdin="mx,my,mz\n0,0,1.00001\n")
     check(f32.returncode == 0, "the tolerance of f32")
     low = rows(run("eval", "D", "--ndf", "ggx", stdin="mx,my,mz\n0.6,0,-0.8\n", status=0).stdout)
@@ -311,6 +334,14 @@ def eval_memory():
 
 
 # ---------------------------------------------------------------- sample
+
+def sample_lengths():
+    """--wi of any length, however small or large, is the same direction."""
+    one = run("sample", "brdf", "--ndf", "ggx", "--wi", "1,0,1", "-n", "3", status=0).stdout
+    for wi in ("5e-324,0,5e-324", "1e308,0,1e308", "1e-200,0,1e-200"):
+        check(run("sample", "brdf", "--ndf", "ggx", "--wi", wi, "-n", "3").stdout == one,
+              "--wi %s is not 1,0,1" % wi)
+
 
 def samples():
     for what, wi in (("normal", None), ("visible", "60,30"), ("brdf", "60,30")):
@@ -347,4 +378,4 @@ def samples():
 
 
 run_sections([help_texts, usage_errors, list_ranges, eval_values, eval_read_back, eval_bad_rows,
-              eval_memory, samples])
+              eval_memory, sample_lengths, samples])

@@ -3,6 +3,7 @@
 import json
 import os
 import pty
+import resource
 import signal
 import struct
 import subprocess
@@ -86,6 +87,38 @@ def conversions():
     a, b = curves.values()
     middle = range(300, 1100)                   # away from grazing angles a bin changes little
     check(all(near(a[i], b[i], 0.1) for i in middle), "a material as a measurement")
+
+
+def isotropic_only():
+    """What a MERL table cannot hold is refused rather than lost."""
+    gold = "conductor:metal=Au,ndf=(%s)"
+    for ndf in ("ggx:alpha_x=0.4,alpha_y=0.1", "beckmann:alpha_x=1e-4,alpha_y=1.01e-4",
+                "student_t:alpha=0.2,gamma=3,mean_x=0.01", "ellipsoid:alpha=0.2,theta_x=0.1"):
+        for name in ("an.binary", "an.csv"):
+            run("convert", "--material", gold % ndf, name, status=1, says=[ndf, "isotropic"])
+            run("convert", "--ndf", ndf, name, status=1, says=[ndf, "isotropic"])
+    nothing_here("a refused conversion")
+    for ndf in ("beckmann:alpha=1e-5", "ggx:alpha=100", "student_t:alpha=0.3,gamma=1.6"):
+        run("convert", "--material", gold % ndf, "iso.binary", status=0)
+    os.remove("iso.binary")
+    turned = "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,f\n30,0,40,150,2\n30,10,40,150,1\n"
+    with open("turned.csv", "w", encoding="utf-8") as file:
+        file.write(turned)
+    run("convert", "turned.csv", "an.binary", status=1, says=["turned.csv", "isotropic"])
+    run("convert", "turned.csv", "copy.csv", status=0)
+    nothing_here("a refused conversion", ["turned.csv", "copy.csv"])
+
+
+def listed_geometries():
+    """Between listed geometries nothing is known: no picture."""
+    with open("one.csv", "w", encoding="utf-8") as file:
+        file.write("theta_i_deg,theta_o_deg,phi_o_deg,f\n30,40,150,2\n")
+    folder = os.path.join(SHARED, "data", "measured", "merl_subset")
+    names = ["one.csv", os.path.join(folder, "aluminium_inplane_lumos.csv")]
+    for name in [n for n in names if os.path.exists(n)]:
+        run("render", "--data", name, "-o", "a.png", status=1,
+            says=["the measurement lists geometries and cannot be rendered"])
+    nothing_here("a refused picture", ["one.csv"])
 
 
 def broken_measurements():
@@ -193,6 +226,20 @@ def signals():
         stopped(long_sample, number, True)
 
 
+def file_limit():
+    """Past `ulimit -f` a write fails as on a full disk; nothing is left behind."""
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (20480, 20480))
+    for words in (["convert", "--ndf", "ggx", "full.csv"], ["convert", "--ndf", "ggx", "full.merl"],
+                  ["sample", "normal", "--ndf", "ggx", "-n", "100000", "-o", "full.csv"],
+                  ["render", "--ndf", "ggx", "--size", "64", "--spp", "1", "-o", "full.pfm"]):
+        done = subprocess.run([COMMAND, *words], capture_output=True, text=True, preexec_fn=limit,
+                              check=False)
+        check(done.returncode == 1 and "full." in done.stderr and ": cannot write: File too large" in done.stderr,
+              "%s past the limit: %d %s" % (words[0], done.returncode, done.stderr))
+        nothing_here("%s past the limit" % words[0])
+
+
 def full_device():
     if not os.path.exists("/dev/full"):
         return
@@ -265,5 +312,6 @@ def checks():
     check([law["law"] for law in one["results"][0]["laws"]] == names[:1], "check --law")
 
 
-run_sections([plots, plot_numbers, conversions, broken_measurements, renders, progress_bar, signals,
-              full_device, fabrications, checks])
+run_sections([plots, plot_numbers, conversions, isotropic_only, listed_geometries,
+              broken_measurements, renders, progress_bar, signals, file_limit, full_device,
+              fabrications, checks])

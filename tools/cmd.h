@@ -105,6 +105,9 @@ int cmd_mask(const cmd_args *args, const char *option, int *out);
  * facets of a distribution; --mask overrules the material's. cmd_surface: there must be just one. */
 int cmd_surface_at(const cmd_args *args, const char *option, size_t index, asp_material *out);
 int cmd_surface(const cmd_args *args, asp_material *out);
+/* Says what is wrong with `spec`, which is no distribution by `err`; `given` stands before it
+ * ("--ndf ", ""). CMD_USAGE. */
+int cmd_bad_ndf(const char *given, const char *spec, const asp_error *err);
 
 /* ------------------------------------------------------------------ saying what is wrong
  *
@@ -137,6 +140,11 @@ int cmd_find(const char *name, const char *const *names);
 
 void cmd_hold(void);
 void cmd_release(void);
+
+/* Does a file name end so, in upper or lower case (".svg")? */
+int cmd_ends_in(const char *path, const char *ending);
+/* 1: there is a device or a pipe of this name, which may be called anything. */
+int cmd_is_device(const char *path);
 
 /* Before long work: can a file be written there? CMD_OK, or the error printed and CMD_FAILED. */
 int cmd_out_check(const char *path);

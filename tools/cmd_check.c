@@ -59,9 +59,8 @@ static int check_spec(const char *spec, asp_laws_options *how, progress *p, grou
 {
     asp_ndf ndf;
     asp_error err;
-    char line[640];
     if (asp_ndf_parse(NULL, spec, &ndf, &err) != ASP_OK)
-        return cmd_usage("%s: %s", spec, asp_error_text(&err, line, sizeof line));
+        return cmd_bad_ndf("", spec, &err);
     g->spec = spec;
     g->spec_count++;
     how->progress = show;

@@ -2,6 +2,7 @@
 #include "csv.h"
 #include "precision.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -126,18 +127,27 @@ static int check_units(const csv *table, const layout *where, const double row[S
     return CMD_OK;
 }
 
-static int read_row(const csv *table, const layout *where, double tolerance, block64 *b, size_t at)
+static int read_row(const csv *table, const layout *where, int single, block64 *b, size_t at)
 {
     double number[SLOTS], row[SLOTS] = { 0 };
     if (csv_numbers(table, where->column, where->count, number))
         return CMD_FAILED;
-    for (size_t i = 0; i < where->count; i++)
+    for (size_t i = 0; i < where->count; i++) {
+        if (single && fabs(number[i]) > FLT_MAX)
+            return cmd_failed("%s: line %lld: column '%s': %g is outside [-%.9g, %.9g], the range "
+                              "of float32", table->name, table->number,
+                              table->column[where->column[i]], number[i], (double)FLT_MAX,
+                              (double)FLT_MAX);
         row[where->slot[i]] = number[i];
-    if (check_units(table, where, row, tolerance))
+    }
+    if (check_units(table, where, row, single ? 1e-4 : 1e-6))
         return CMD_FAILED;
     if (where->slope_of_normal) {            /* a normal at or below the horizon has no slope */
-        row[AT_P] = row[AT_M + 2] > 0 ? -row[AT_M] / row[AT_M + 2] : HUGE_VAL;
-        row[AT_P + 1] = row[AT_M + 2] > 0 ? -row[AT_M + 1] / row[AT_M + 2] : HUGE_VAL;
+        double px = -row[AT_M] / row[AT_M + 2], py = -row[AT_M + 1] / row[AT_M + 2];
+        double steepest = single ? FLT_MAX : DBL_MAX;
+        int known = row[AT_M + 2] > 0 && fabs(px) <= steepest && fabs(py) <= steepest;
+        row[AT_P] = known ? px : HUGE_VAL;
+        row[AT_P + 1] = known ? py : HUGE_VAL;
     }
     for (size_t i = 0; i < SLOTS; i++)
         b->in[i][at] = row[i];
@@ -220,7 +230,7 @@ static int eval_rows(const job *work, csv *table, const layout *where, block64 *
         if (got == CSV_BROKEN)
             status = CMD_FAILED;
         else if (got == CSV_CELLS)
-            status = read_row(table, where, bf ? 1e-4 : 1e-6, b, rows);
+            status = read_row(table, where, bf != NULL, b, rows);
         if (status == CMD_OK)
             status = keep_line(kept, table, got == CSV_CELLS ? (int)rows++ : -1);
         if (status == CMD_OK && (rows == BLOCK || kept->count == 2 * BLOCK)) {
@@ -274,6 +284,17 @@ static int make_job(const cmd_args *args, job *work)
     return status;
 }
 
+/* The new column's name stands in the header without quotes. */
+static int check_name(const char *name)
+{
+    for (const char *c = name; c && *c; c++)
+        if ((unsigned char)*c < 32 || *c == 127 || strchr(",;\"", *c))
+            return cmd_usage("--as: a name may hold no comma, semicolon, tab, quote or line end");
+    if (name && strlen(name) > 100)
+        return cmd_usage("--as: %zu letters are more than 100", strlen(name));
+    return CMD_OK;
+}
+
 static int run(const cmd_args *args)
 {
     job *work = malloc(sizeof *work);
@@ -284,6 +305,8 @@ static int run(const cmd_args *args)
     cmd_out out;
     int status = work && b && (bf || !cmd_choice(args, "precision"))
         ? make_job(args, work) : cmd_failed("out of memory");
+    if (status == CMD_OK)
+        status = check_name(cmd_text(args, "as"));
     if (status == CMD_OK)
         status = cmd_out_open(&out, cmd_text(args, "output"));
     if (status == CMD_OK) {

@@ -415,6 +415,8 @@ static int write_all(const cmd_args *args, const picture *p)
     char other[1024];
     cmd_out out, numbers;
     int csv = cmd_given(args, "csv") > 0, status;
+    if (strcmp(path, "-") != 0 && !cmd_ends_in(path, ".svg") && !cmd_is_device(path))
+        return cmd_usage("--output %s: the name must end in .svg", path);
     beside(path, other, sizeof other);
     if (csv && (strcmp(path, "-") == 0 || strcmp(path, other) == 0))
         return cmd_usage("--csv needs a picture's file name that can be followed by one in .csv");
@@ -459,7 +461,7 @@ static int run(const cmd_args *args)
 }
 
 static const cmd_option options[] = {
-    { "output", 'o', "FILE", CMD_TEXT, .required = 1, .help = "the picture, SVG; - is standard output" },
+    { "output", 'o', "FILE", CMD_TEXT, .required = 1, .help = "the picture, .svg; - is standard output" },
     { "ndf", 0, "SPEC", CMD_TEXT, .many = 1,
       .help = "a distribution (its lobes are those of perfect mirror facets)" },
     { "material", 0, "SPEC", CMD_TEXT, .many = 1, .help = "a material" },

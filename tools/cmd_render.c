@@ -9,18 +9,30 @@ static asp_rgb measured(const void *context, asp_vec3 wi, asp_vec3 wo)
 }
 
 /* Refused before the rendering rather than after it. */
-static int check_name(const char *path)
+static int check_name(const cmd_args *args)
 {
     static const char *const known[] = { ".png", ".exr", ".pfm" };
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && i < sizeof known / sizeof *known; i++) {
-        size_t j = 0;
-        while (dot[j] && (dot[j] | 32) == (known[i][j] | 32))
-            j++;
-        if (!dot[j] && !known[i][j])
+    const char *path = cmd_text(args, "output");
+    int exr = cmd_ends_in(path, ".exr");
+    if (cmd_given(args, "float") && !exr)
+        return cmd_usage("--float goes with an .exr only, not with --output %s", path);
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (cmd_ends_in(path, known[i]))
             return CMD_OK;
-    }
     return cmd_usage("--output %s: the name must end in .png, .exr or .pfm", path);
+}
+
+/* Between listed geometries nothing is known: a picture of the nearest ones would show their
+ * pattern and not the material. */
+static int read_data(const char *path, asp_measured **out)
+{
+    asp_error err;
+    *out = asp_measured_read(path, &err);
+    if (!*out)
+        return cmd_error(&err);
+    if (asp_measured_get_info(*out).scattered)
+        return cmd_failed("%s: the measurement lists geometries and cannot be rendered", path);
+    return CMD_OK;
 }
 
 static int render(const cmd_args *args, asp_preview *look)
@@ -48,13 +60,12 @@ static int render(const cmd_args *args, asp_preview *look)
 
 static int run(const cmd_args *args)
 {
-    asp_error err;
     asp_material material;
     asp_measured *data = NULL;
     asp_environment environment = cmd_choice(args, "env") ? asp_environment_furnace(1)
                                                           : asp_environment_studio();
     asp_preview look;
-    int status = check_name(cmd_text(args, "output"));
+    int status = check_name(args);
     memset(&look, 0, sizeof look);
     look.environment = &environment;
     look.width = look.height = (int)cmd_integer(args, "size");
@@ -67,9 +78,7 @@ static int run(const cmd_args *args)
     if (cmd_given(args, "data")) {
         if (cmd_given(args, "ndf") || cmd_given(args, "material"))
             return cmd_usage("--data does not go with --ndf or --material");
-        data = asp_measured_read(cmd_text(args, "data"), &err);
-        if (!data)
-            return cmd_error(&err);
+        status = read_data(cmd_text(args, "data"), &data);
         look.function = measured;
         look.context = data;
     } else {
@@ -90,7 +99,7 @@ static const cmd_option options[] = {
     { "material", 0, "SPEC", CMD_TEXT, .help = "the material" },
     { "ndf", 0, "SPEC", CMD_TEXT, .help = "or a distribution of perfect mirror facets" },
     { "mask", 0, "NAME", CMD_TEXT, .help = "masking, as in `asperity list`" },
-    { "data", 0, "FILE", CMD_TEXT, .help = "or a measurement, of any format of `asperity list`" },
+    { "data", 0, "FILE", CMD_TEXT, .help = "or a measurement over a grid (merl, rgl); not one that lists geometries" },
     { "size", 0, "N", CMD_INTEGER, 1, 16384, .initial = "512", .help = "pixels along a side" },
     { "spp", 0, "N", CMD_INTEGER, 1, 65536, .initial = "64", .help = "samples per pixel" },
     { "env", 0, "studio|furnace", CMD_CHOICE, .initial = "studio",

@@ -52,8 +52,11 @@ static int read_line(csv *table)
     if (n < 0 && !ferror(table->file) && errno != ENOMEM)
         return 0;
     if (n < 0) {
-        cmd_failed("%s: line %lld: %s", table->name, table->number + 1,
-                   strerror(errno ? errno : EIO));
+        int number = errno ? errno : EIO;
+        if (table->number == 0)                /* a directory: there is no line to speak of */
+            cmd_failed("%s: cannot read: %s", table->name, strerror(number));
+        else
+            cmd_failed("%s: line %lld: %s", table->name, table->number + 1, strerror(number));
         return -1;
     }
     table->number++;
@@ -65,6 +68,10 @@ static int read_line(csv *table)
     while (n > 0 && (table->line[n - 1] == '\n' || table->line[n - 1] == '\r'))
         n--;
     table->line[n] = 0;
+    if (table->number == 1 && strncmp(table->line, "\xef\xbb\xbf", 3) == 0) {
+        n -= 3;                                /* a byte order mark is no part of the text */
+        memmove(table->line, table->line + 3, (size_t)n + 1);
+    }
     table->length = (size_t)n;
     return 1;
 }
@@ -77,11 +84,8 @@ static int is_aside(const char *line)
 
 static int read_header(csv *table)
 {
-    char *text = table->line;
-    const char *at = text, *start;
+    const char *at = table->line, *start;
     size_t length;
-    if (strncmp(text, "\xef\xbb\xbf", 3) == 0)         /* a byte order mark */
-        at = text + 3;
     table->separator = strchr(at, '\t') ? '\t' : strchr(at, ';') ? ';' : ',';
     table->columns = cell_count(at, table->separator);
     table->column = calloc(table->columns, sizeof *table->column);

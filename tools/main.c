@@ -68,6 +68,8 @@ int main(int argc, char **argv)
         status = help(argc - 1, argv + 1);
     else if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)
         frame_help(stdout);
+    else if (strcmp(argv[1], "--version") == 0 && argc > 2)
+        status = cmd_usage("'%s' is one too many: asperity --version", argv[2]);
     else if (strcmp(argv[1], "--version") == 0)
         printf("asperity %d.%d.%d\n", ASP_VERSION_MAJOR, ASP_VERSION_MINOR, ASP_VERSION_PATCH);
     else

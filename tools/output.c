@@ -1,5 +1,5 @@
 /* output.c - errors, files, signals and the progress bar */
-#define _POSIX_C_SOURCE 200809L
+#define _XOPEN_SOURCE 700                  /* strcasecmp, SIGXFSZ */
 #include "frame.h"
 
 #include <errno.h>
@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -127,6 +128,8 @@ void frame_signals(void)
     static const int numbers[] = { SIGINT, SIGTERM, SIGHUP };
     struct sigaction action;
     memset(&action, 0, sizeof action);
+    action.sa_handler = SIG_IGN;           /* past `ulimit -f` a write then fails with EFBIG, which */
+    sigaction(SIGXFSZ, &action, NULL);     /* is reported like a full disk */
     action.sa_handler = on_signal;
     action.sa_flags = (int)SA_RESETHAND;
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
@@ -151,12 +154,23 @@ void cmd_release(void) { signals_mask(SIG_UNBLOCK); }
 
 /* ------------------------------------------------------------------ files */
 
+int cmd_ends_in(const char *path, const char *ending)
+{
+    size_t n = strlen(path), m = strlen(ending);
+    return n > m && strcasecmp(path + n - m, ending) == 0;
+}
+
+int cmd_is_device(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0 && !S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode);
+}
+
 int cmd_out_check(const char *path)
 {
     asp_error err;
     aspi_out out;
-    struct stat about;
-    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode))
+    if (cmd_is_device(path))
         return CMD_OK;                     /* opening a device or a pipe may do something already */
     cmd_hold();
     asp_status status = aspi_out_open(&out, path, &err);

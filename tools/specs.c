@@ -41,13 +41,38 @@ static int bad_value(const char *option, const char *text, const asp_error *err)
                      nearest ? nearest : "", nearest ? "'?" : "");
 }
 
+int cmd_bad_ndf(const char *given, const char *spec, const asp_error *err)
+{
+    char line[640], known[512] = "";
+    const char *names[128];
+    size_t used = 0;
+    int scatters = 0;
+    for (const asp_bsdf *const *b = asp_bsdfs(); *b; b++)
+        scatters |= strcmp((*b)->name, err->name) == 0;
+    if (err->status != ASP_EUNKNOWN || err->position != 0)
+        return cmd_usage("%s%s: %s", given, spec, asp_error_text(err, line, sizeof line));
+    known_names("ndf", 1, names);
+    if (!scatters) {
+        snprintf(line, sizeof line, "%s%.400s: unknown distribution", given, spec);
+        return cmd_unknown(line, err->name, names);
+    }
+    for (size_t i = 0; names[i] && used < sizeof known; i++)
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", names[i]);
+    return cmd_usage("%s%s: '%s' is a scattering model, which stands in --material; known "
+                     "distributions: %s", given, spec, err->name, known);
+}
+
 int cmd_ndf(const cmd_args *args, const char *option, size_t index, asp_ndf *out)
 {
     asp_error err;
     const char *spec = cmd_text_at(args, option, index);
     if (asp_ndf_parse(NULL, spec, out, &err) == ASP_OK)
         return CMD_OK;
-    return bad_value(option, spec, &err);
+    if (err.status != ASP_EUNKNOWN || err.position != 0)
+        return bad_value(option, spec, &err);
+    char given[64];
+    snprintf(given, sizeof given, "--%s ", option);
+    return cmd_bad_ndf(given, spec, &err);
 }
 
 int cmd_material(const cmd_args *args, const char *option, size_t index, asp_material *out)
@@ -92,6 +117,9 @@ int cmd_direction(const cmd_args *args, const char *option, asp_vec3 *out)
         value[1] = sin(theta) * sin(phi);
         value[2] = theta == 90 * degree ? 0 : cos(theta);
     }
+    double largest = fmax(fabs(value[0]), fmax(fabs(value[1]), fabs(value[2])));
+    for (int i = 0; i < 3 && largest > 0 && (largest < 1e-150 || largest > 1e150); i++)
+        value[i] /= largest;                   /* else the length has too few digits, or overflows */
     double length = hypot(hypot(value[0], value[1]), value[2]);
     if (!(length > 0) || isinf(length))
         return cmd_usage("--%s '%s': length %g is outside (0, 1e308]", option, text, length);

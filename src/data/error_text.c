@@ -18,11 +18,25 @@ static void add(line *l, const char *text)
     l->text[l->used] = 0;
 }
 
-static void add_number(line *l, double value)
+static void add_number(line *l, double value, int digits)
 {
     char text[ASPI_NUMBER_TEXT];
-    aspi_format_number(value, 6, text);
+    aspi_format_number(value, digits, text);
     add(l, text);
+}
+
+/* Six, or as many as tell the value from the end of the range that it misses. */
+static int digits_of(double value, double low, double high)
+{
+    char a[ASPI_NUMBER_TEXT], b[ASPI_NUMBER_TEXT], c[ASPI_NUMBER_TEXT];
+    for (int digits = 6; digits < 17; digits++) {
+        aspi_format_number(value, digits, a);
+        aspi_format_number(low, digits, b);
+        aspi_format_number(high, digits, c);
+        if ((value == low || strcmp(a, b) != 0) && (value == high || strcmp(a, c) != 0))
+            return digits;
+    }
+    return 17;
 }
 
 static void add_count(line *l, const char *word, long long count)
@@ -76,13 +90,14 @@ const char *asp_error_text(const asp_error *err, char *buffer, size_t size)
 
     int ranged = !isnan(err->low) && !isnan(err->high);
     if (ranged) {
+        int digits = digits_of(err->value, err->low, err->high);
         add(&l, err->name[0] ? " = " : "");
-        add_number(&l, err->value);
+        add_number(&l, err->value, digits);
         add(&l, err->low_open ? " is outside (" : " is outside [");
-        add_number(&l, err->low);
+        add_number(&l, err->low, digits);
         add(&l, ", ");
-        add_number(&l, err->high);
-        add(&l, isinf(err->high) ? ")" : "]");
+        add_number(&l, err->high, digits);
+        add(&l, "]");                         /* the upper end is allowed, infinity too */
         if (err->reason[0] && strcmp(err->reason, "outside its range") != 0) {
             add(&l, "; ");
             add(&l, err->reason);

@@ -16,7 +16,7 @@ asp_status aspi_fail_system(asp_error *err, int number, const char *path, const 
     if (strerror_r(number, system, sizeof system) != 0)
         snprintf(system, sizeof system, "error %d", number);
     snprintf(reason, sizeof reason, "%s: %s", doing, system);
-    asp_status status = asp_fail(err, ASP_EIO, "path", reason);
+    asp_status status = asp_fail(err, ASP_EIO, "", reason);
     if (err)
         snprintf(err->file, sizeof err->file, "%s", path);
     return status;
