@@ -35,7 +35,8 @@ typedef struct asp_measurement { asp_vec3 wi, wo; asp_rgb f; } asp_measurement;
 
 typedef struct asp_measured_info {
     const char *format;        /* "merl", "rgl", "csv", "cornell", "lumos" */
-    const char *description;   /* what the file says of itself, "" if nothing */
+    const char *description;   /* what the file says of itself, and after a "; " how many of its rows
+                                  were left out (csv) or values read as 0 (rgl); "" if nothing */
     int    isotropic;          /* 1: depends on the azimuth difference only, as far as the file tells */
     int    scattered;          /* 1: only listed geometries are known (eval interpolates nothing) */
     int    channels;           /* 1 or 3 in the file */

@@ -82,6 +82,32 @@ static void check_columns(void)
     expect_row("# phi_i theta_i phi_o theta_o brdf\n30 0 -40 -30 2.5\n", wi, wo, grey, 1, 1);
 }
 
+/* Rows that are left out are counted in the description. */
+static void check_left_out(void)
+{
+    const struct { const char *rows, *says; } table[] = {
+        { "1,1,0,1,1,1\n", "scan" },
+        { "1,1,0,1,1,1\n1,1,1,1,1,-1\n", "scan; 1 row left out: a negative value" },
+        { "1,1,0,1,1,1\n1,1.570796,1,1,1,1\n1.570796,1,1,1,1,1\n",
+          "scan; 2 rows left out: a direction at the horizon" },
+        { "1,1,0,1,1,1\n1,1,1,-1,-1,-1\n1,1.570796,1,1,1,1\n1,1.570796,1,-1,1,1\n",
+          "scan; 3 rows left out: a negative value or a direction at the horizon" },
+    };
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        char text[400];
+        snprintf(text, sizeof text, "# scan\ntheta_i,theta_o,phi_o,r,g,b\n%s", table[i].rows);
+        asp_measured *m = read_text(text);
+        asp_measured_info info = asp_measured_get_info(m);
+        CHECK(info.samples == 1 && !strcmp(info.description, table[i].says), "'%s', not '%s'",
+              info.description, table[i].says);
+        asp_measured_free(m);
+    }
+    asp_measured *m = read_text("theta_i,theta_o,phi_o,f\n1,1,0,1\n1,1,1,-1\n");
+    CHECK(!strcmp(asp_measured_get_info(m).description, "1 row left out: a negative value"),
+          "a remark without a description");
+    asp_measured_free(m);
+}
+
 static void refuse(const char *text, const char *first, const char *second)
 {
     expect_refusal(text, strlen(text), "bad.csv", 2, first, second);
@@ -92,6 +118,10 @@ static void check_refusals(void)
     refuse("", "empty", "");
     refuse("# only a comment\n", "line 1", "no rows");
     refuse("theta_i,theta_o,phi_o,f\n", "no row", "");
+    refuse("theta_i,theta_o,phi_o,f\n1.570796,1,0,1\n", "no row", "above the horizon");
+    refuse("# c\ntheta_i,theta_o,phi_o,f\n1,1,0,-1\n1,1,1,-2\n1,1,2,-2\n", "line 3: no row",
+           "negative ones mark missing values, here and in 2 more");
+    refuse("theta_i,theta_o,phi_o,r,g,b\n1,1,0,1,1,-1\n", "line 2: no row", "values, here");
     refuse("1 2 3 4\n5 6 7 8\n", "line 1", "theta_i");
     refuse("0.1,0.2\n", "line 1", "columns have no names");
     refuse("angle,theta_o,phi_o,f\n1,1,1,1\n", "line 1: column 'angle'", "accepted: theta_i");
@@ -246,6 +276,7 @@ static void check_bins(void)
 int main(void)
 {
     check_columns();
+    check_left_out();
     check_refusals();
     check_nearest(1);
     check_nearest(0);

@@ -88,7 +88,7 @@ static void make_material(build *b, const material *m)
                                   (1 + c) * (3 + phi_at(m, i) / 4 + PI / 4 * j / (t - 1) + u + v / 2));
                 }
     *field(b, "jacobian", 1, 1, (int[]){ 1 }) = (unsigned char)m->jacobian;
-    field(b, "luminance", 10, 1, (int[]){ 1 });
+    put_float(field(b, "luminance", 10, 1, (int[]){ 1 }), 0, 0.5);
 }
 
 /* f cos(theta_o) of that material in closed form. */
@@ -205,7 +205,8 @@ static void check_damage(void)
         { "rgb", 5, NAN, "'rgb' = nan" },        { "rgb", 0, INFINITY, "'rgb' = inf" },
         { "vndf", 4, -1, "'vndf' = -1" },        { "vndf", 4, 1e30, "vndf" },
         { "sigma", 0, NAN, "sigma" },            { "theta_i", 1, 9, "theta_i" },
-        { "theta_i", 1, 0, "must increase" },
+        { "theta_i", 1, 0, "must increase" },    { "luminance", 0, NAN, "'luminance' = nan" },
+        { "luminance", 0, -INFINITY, "'luminance' = -inf" },
     };
     for (size_t i = 0; i < sizeof number / sizeof number[0]; i++) {
         bad = good;
@@ -226,10 +227,15 @@ static void check_damage(void)
     expect_refusal(bad.bytes, bad.data, "version.bsdf", 1, "version 2.0");
     bad = good;
     set(&bad, 14, 0xffffffffu, 4);
-    expect_refusal(bad.bytes, bad.data, "fields.bsdf", 1, "field table");
+    expect_refusal(bad.bytes, bad.data, "fields.bsdf", 2, "byte 14: field 'number of fields'",
+                   "4294967295 fields");
+    bad = good;                                            /* more fields than the table holds */
+    set(&bad, 14, good.fields + 2, 4);
+    memset(bad.bytes + good.used, 0xff, 2);                /* a name that is longer than the file */
+    expect_refusal(bad.bytes, bad.data, "table.bsdf", 1, ": the file ends inside the field table");
     bad = good;
     memcpy(bad.bytes + entry_of(&bad, "rgb") - 3, "ndf", 3);
-    expect_refusal(bad.bytes, bad.data, "twice.bsdf", 1, "listed twice");
+    expect_refusal(bad.bytes, bad.data, "twice.bsdf", 2, "field 'ndf'", "listed twice");
     bad = good;
     memcpy(bad.bytes + entry_of(&bad, "rgb") - 3, "abc", 3);
     expect_refusal(bad.bytes, bad.data, "missing.bsdf", 2, "'rgb'", "missing");
@@ -254,6 +260,27 @@ static void check_damage(void)
         }
     printf("one bit turned: %d files still read\n", read);
     CHECK(read > 100, "most data bits do not matter to the structure");
+}
+
+/* Negative values are counted, channel by channel. */
+static void check_negative(void)
+{
+    static build b;
+    const material m = { 1, 5, 5, 1, 1 };                  /* 125 values in each channel */
+    asp_error err;
+    make_material(&b, &m);
+    unsigned char *rgb = b.bytes + offset_of(&b, "rgb");
+    for (size_t slice = 0; slice < 15; slice++)
+        for (size_t i = 0; i < 25; i++)
+            if (slice % 3 == 0 && i < 20)                  /* four fifths of red */
+                put_float(rgb, slice * 25 + i, -1 - (double)i);
+    put_float(rgb, 2 * 25 + 7, -1e-9);                     /* one of blue, in the first slice */
+    put_float(rgb, 1 * 25 + 7, -0.0);                      /* is no negative value */
+    asp_measured *r = asp_measured_read_memory(b.bytes, b.data, "negative.bsdf", &err);
+    const char *says = asp_measured_get_info(r).description;
+    CHECK(!strcmp(says, "synthetic 1; 80 % of red, 0.8 % of blue values are negative and read as 0"),
+          "negative values: '%s'", says);
+    asp_measured_free(r);
 }
 
 static void check_csv(void)
@@ -287,6 +314,7 @@ int main(void)
     check_material(&(material){ 7, 6, 5, 2, 1 }, "anisotropic, half turn");
     check_material(&(material){ 5, 6, 5, 4, 1 }, "anisotropic, quarter turn");
     check_damage();
+    check_negative();
     check_csv();
     if (folder_[0])
         rmdir(folder_);

@@ -10,7 +10,8 @@
  * separated by commas, semicolons or blanks. Lines that start with # are comments; a comment may
  * give a quantity that is the same in all rows, `# phi_d = 90 deg`, and `# isotropic = 1`.
  *
- * Rows with a negative value have none and are left out, and so are directions at the horizon.
+ * Rows with a negative value have none and are left out, and so are directions at the horizon; the
+ * description says how many.
  * Rows by bin that number at least a quarter of a MERL table make a table; fewer make a list of the
  * bins' centres. */
 #include "columns.h"
@@ -167,12 +168,41 @@ static int same_azimuth(const aspi_list *list)
     return 1;
 }
 
+/* Rows that were read and left out. */
+typedef struct left_out { size_t negative, horizon; long long first_negative; } left_out;
+
+/* A list without a row: where that is because of negative values, it says so. */
+static asp_measured *fail_negative(const aspi_bytes *file, aspi_list *list, const left_out *out,
+                                   asp_error *err)
+{
+    char reason[160];
+    int n = snprintf(reason, sizeof reason, "no row has a value: negative ones mark missing values, "
+                     "here");
+    if (out->negative > 1)
+        snprintf(reason + n, sizeof reason - (size_t)n, " and in %zu more", out->negative - 1);
+    aspi_list_clear(list);
+    aspi_fail_line(err, ASP_EFORMAT, file->name, out->first_negative, "", reason);
+    return NULL;
+}
+
+static void remark_of(const left_out *out, char *text, size_t size)
+{
+    size_t rows = out->negative + out->horizon;
+    text[0] = 0;
+    if (rows)
+        snprintf(text, size, "%zu row%s left out: %s", rows, rows == 1 ? "" : "s",
+                 !out->horizon ? "a negative value" : !out->negative ? "a direction at the horizon"
+                 : "a negative value or a direction at the horizon");
+}
+
 static asp_measured *read_list(const aspi_bytes *file, aspi_lines lines, const aspi_header *h,
                                const char *format, asp_error *err)
 {
     aspi_list list = { 0 };
     aspi_merl bins = { ASPI_MERL_H, ASPI_MERL_D, ASPI_MERL_P, NULL };
     aspi_line line;
+    left_out out = { 0, 0, 0 };
+    char remark[160];
     row r;
     int grey = h->at[ASPI_F] >= 0;
     while (aspi_next_line(&lines, &line)) {
@@ -188,18 +218,30 @@ static asp_measured *read_list(const aspi_bytes *file, aspi_lines lines, const a
         const double *v = r.value;
         asp_rgb f = grey ? (asp_rgb){ v[ASPI_F], v[ASPI_F], v[ASPI_F] }
                          : (asp_rgb){ v[ASPI_R], v[ASPI_G], v[ASPI_B] };
-        if (wi.z < 1e-6 || wo.z < 1e-6 || f.r < 0 || f.g < 0 || f.b < 0)
+        if (f.r < 0 || f.g < 0 || f.b < 0) {       /* one channel missing: the colour is unknown */
+            if (!out.negative++)
+                out.first_negative = r.line;
             continue;
+        }
+        if (wi.z < 1e-6 || wo.z < 1e-6) {
+            out.horizon++;
+            continue;
+        }
         if (!aspi_list_add(&list, wi, wo, f)) {
             aspi_list_clear(&list);
             aspi_fail_line(err, ASP_ENOMEM, file->name, line.number, "", "out of memory");
             return NULL;
         }
     }
+    if (!list.count && out.negative && !out.horizon)
+        return fail_negative(file, &list, &out, err);
     int halves = h->at[ASPI_INDEX_H] >= 0 || (h->at[ASPI_THETA_H] >= 0 && h->at[ASPI_PHI_H] < 0);
     asp_measured_info info = { .format = format, .channels = grey ? 1 : 3 };
     info.isotropic = h->isotropic >= 0 ? h->isotropic : halves || same_azimuth(&list);
-    return aspi_list_wrap(&list, info, h->description.text, h->description.length, file->name, err);
+    remark_of(&out, remark, sizeof remark);
+    return aspi_measured_remark(aspi_list_wrap(&list, info, h->description.text,
+                                               h->description.length, file->name, err),
+                                remark, err);
 }
 
 /* ------------------------------------------------------------------ rows by bin */

@@ -35,6 +35,27 @@ asp_measured *aspi_measured_wrap(const aspi_kind *kind, void *data, asp_measured
     return measured;
 }
 
+asp_measured *aspi_measured_remark(asp_measured *measured, const char *remark, asp_error *err)
+{
+    if (!measured || !remark[0])
+        return measured;
+    size_t length = strlen(measured->description), more = strlen(remark);
+    char *text = realloc(measured->description, length + more + 3);
+    if (!text) {
+        asp_measured_free(measured);
+        asp_fail(err, ASP_ENOMEM, "", "not enough memory for the measurement");
+        return NULL;
+    }
+    if (length) {
+        memcpy(text + length, "; ", 2);
+        length += 2;
+    }
+    memcpy(text + length, remark, more + 1);
+    measured->description = text;
+    measured->info.description = text;
+    return measured;
+}
+
 static asp_measured *read_bytes(const aspi_bytes *file, asp_error *err)
 {
     if (!file->size) {

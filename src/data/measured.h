@@ -47,6 +47,10 @@ extern const aspi_kind   aspi_kind_merl, aspi_kind_rgl, aspi_kind_list;
 asp_measured *aspi_measured_wrap(const aspi_kind *kind, void *data, asp_measured_info info,
                                  const char *description, size_t length, asp_error *err);
 
+/* Adds a remark on what was read to the description, after "; ". Takes the measurement; NULL (no
+ * memory, or none given) with err filled in the first case. */
+asp_measured *aspi_measured_remark(asp_measured *measured, const char *remark, asp_error *err);
+
 /* ---- MERL tables (merl.c): stored numbers, f = value times the scale of the channel */
 
 typedef struct aspi_merl {

@@ -9,7 +9,8 @@
  *
  * with angles in the unit square as u = sqrt(2 theta / pi), v = (phi + pi) / (2 pi); the azimuth of m
  * counts from that of wi where the material is isotropic (at most two phi_i). Colours that the
- * conversion from spectra put outside sRGB are clipped at 0, as the database's loader does. Where
+ * conversion from spectra put outside sRGB are clipped at 0, as the database's loader does; the
+ * description says how many. Where
  * `jacobian` is 0 the stored values are f cos(theta_o) themselves. */
 #include "tensor.h"
 #include "warp.h"
@@ -157,7 +158,7 @@ const aspi_kind aspi_kind_rgl = { rgl_eval, rgl_release, rgl_write_csv };
 
 /* ------------------------------------------------------------------ reading */
 
-enum { PHI, THETA, NDF, SIGMA, VNDF, RGB, DESCRIPTION, JACOBIAN, SPECTRA, FIELDS };
+enum { PHI, THETA, NDF, SIGMA, VNDF, RGB, DESCRIPTION, JACOBIAN, SPECTRA, LUMINANCE, FIELDS };
 
 #define LARGEST 1e20                     /* products of three stay far below the largest double */
 
@@ -170,7 +171,7 @@ static asp_status fail_field(const aspi_bytes *file, const aspi_tensor *t, const
 /* Presence, type, rank and the sizes that must agree. */
 static asp_status check_shapes(const aspi_bytes *file, const aspi_tensor *t, asp_error *err)
 {
-    static const int rank[FIELDS] = { 1, 1, 2, 2, 4, 5, 1, 1, 0 };
+    static const int rank[FIELDS] = { 1, 1, 2, 2, 4, 5, 1, 1, 0, 0 };
     if (!t[RGB].type && t[SPECTRA].type)
         return fail_field(file, &t[SPECTRA], "a spectral file; the RGB one (_rgb.bsdf) is read",
                           err);
@@ -199,6 +200,8 @@ static asp_status check_shapes(const aspi_bytes *file, const aspi_tensor *t, asp
     }
     if (t[RGB].size[2] != 3)
         return fail_field(file, &t[RGB], "needs 3 channels", err);
+    if (t[LUMINANCE].type && t[LUMINANCE].type != ASPI_TENSOR_FLOAT32)
+        return fail_field(file, &t[LUMINANCE], "elements must be float32", err);
     return ASP_OK;
 }
 
@@ -247,6 +250,16 @@ static asp_status read_warp(const aspi_bytes *file, const aspi_tensor *t, double
     return ASP_OK;
 }
 
+/* Nothing is computed from the luminance, but a file with numbers that are none is damaged. */
+static asp_status check_luminance(const aspi_bytes *file, const aspi_tensor *t, asp_error *err)
+{
+    if (!t->type || !t->elements)
+        return ASP_OK;
+    double *value = aspi_tensor_numbers(file, t, -LARGEST, LARGEST, err);
+    free(value);
+    return value ? ASP_OK : ASP_EFORMAT;
+}
+
 static asp_status read_fields(const aspi_bytes *file, const aspi_tensor *t, rgl *m, asp_error *err)
 {
     m->n_phi = t[PHI].elements;
@@ -269,7 +282,29 @@ static asp_status read_fields(const aspi_bytes *file, const aspi_tensor *t, rgl 
         status = read_warp(file, &t[VNDF], 0, 1, &m->vndf, err);
     if (status == ASP_OK)
         status = read_warp(file, &t[RGB], -LARGEST, 0, &m->rgb, err);
+    if (status == ASP_OK)
+        status = check_luminance(file, &t[LUMINANCE], err);
     return status;
+}
+
+/* `63 % of red, 2 % of blue values are negative and read as 0`, "" where none is. */
+static void remark_of(const aspi_warp *rgb, char *text, size_t size)
+{
+    static const char *const name[3] = { "red", "green", "blue" };
+    size_t points = rgb->nx * rgb->ny, of_each = rgb->slices / 3 * points, used = 0;
+    text[0] = 0;
+    for (size_t c = 0; c < 3; c++) {
+        size_t negative = 0;
+        for (size_t slice = c; slice < rgb->slices; slice += 3)
+            for (size_t i = 0; i < points; i++)
+                negative += rgb->value[slice * points + i] < 0;
+        double percent = 100 * (double)negative / (double)of_each;
+        if (negative && used < size)
+            used += (size_t)snprintf(text + used, size - used, percent < 9.95 ? "%s%.2g %% of %s"
+                                     : "%s%.0f %% of %s", used ? ", " : "", percent, name[c]);
+    }
+    if (used && used < size)
+        snprintf(text + used, size - used, " values are negative and read as 0");
 }
 
 static asp_measured *rgl_read(const aspi_bytes *file, asp_error *err)
@@ -277,7 +312,7 @@ static asp_measured *rgl_read(const aspi_bytes *file, asp_error *err)
     aspi_tensor t[FIELDS] = {
         { .name = "phi_i" }, { .name = "theta_i" }, { .name = "ndf" }, { .name = "sigma" },
         { .name = "vndf" }, { .name = "rgb" }, { .name = "description" }, { .name = "jacobian" },
-        { .name = "spectra" }
+        { .name = "spectra" }, { .name = "luminance" }
     };
     if (aspi_read_tensors(file, t, FIELDS, err) != ASP_OK || check_shapes(file, t, err) != ASP_OK)
         return NULL;
@@ -297,7 +332,10 @@ static asp_measured *rgl_read(const aspi_bytes *file, asp_error *err)
         text = (const char *)file->bytes + t[DESCRIPTION].offset;
         length = t[DESCRIPTION].elements;
     }
-    return aspi_measured_wrap(&aspi_kind_rgl, m, info, text, length, err);
+    char remark[160];
+    remark_of(&m->rgb, remark, sizeof remark);
+    return aspi_measured_remark(aspi_measured_wrap(&aspi_kind_rgl, m, info, text, length, err),
+                                remark, err);
 }
 
 const aspi_format aspi_format_rgl = {

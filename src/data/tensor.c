@@ -6,6 +6,7 @@
 
 #define MAGIC "tensor_file"            /* with its final zero, 12 bytes */
 #define HEADER 18
+#define ENTRY 13                       /* the least that a field takes of the table */
 #define TYPES 11
 
 static const unsigned char type_bytes[TYPES + 1] = { 0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8 };
@@ -67,7 +68,7 @@ static asp_status check_field(const aspi_bytes *file, aspi_tensor *t, uint64_t o
 
 static asp_status fail_table(const aspi_bytes *file, size_t at, const char *reason, asp_error *err)
 {
-    return aspi_fail_at(err, ASP_EFORMAT, file->name, (long long)at, "field table", reason);
+    return aspi_fail_at(err, ASP_EFORMAT, file->name, (long long)at, "", reason);
 }
 
 /* Reads one entry at *at and moves on; keeps it if its name is asked for. */
@@ -95,7 +96,8 @@ static asp_status read_entry(const aspi_bytes *file, size_t *at, aspi_tensor *te
     if (!wanted)
         return ASP_OK;
     if (wanted->type)
-        return fail_table(file, entry, "a field is listed twice", err);
+        return aspi_fail_at(err, ASP_EFORMAT, file->name, (long long)entry, wanted->name,
+                            "this field is listed twice");
     wanted->entry = entry;
     if (type < 1 || type > TYPES)
         return aspi_tensor_fail(file, wanted, "unknown element type", err);
@@ -120,6 +122,12 @@ asp_status aspi_read_tensors(const aspi_bytes *file, aspi_tensor *tensor, size_t
         return aspi_fail_at(err, ASP_EFORMAT, file->name, 12, "version", reason);
     }
     size_t fields = (size_t)little(file->bytes + 14, 4), at = HEADER;
+    if (fields > (file->size - HEADER) / ENTRY) {
+        char reason[128];
+        snprintf(reason, sizeof reason, "%zu fields, of %d bytes or more each in the field table; "
+                 "the file has %zu bytes", fields, ENTRY, file->size);
+        return aspi_fail_at(err, ASP_EFORMAT, file->name, 14, "number of fields", reason);
+    }
     for (size_t i = 0; i < count; i++)
         tensor[i] = (aspi_tensor){ .name = tensor[i].name };
     for (size_t i = 0; i < fields; i++) {
