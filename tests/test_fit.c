@@ -309,6 +309,56 @@ static void undetermined_is_said(void)
     asp_measured_free(m);
 }
 
+/* ------------------------------------------------------------------ too little to fit */
+
+static asp_measured *of_text(const char *text)
+{
+    asp_error err;
+    char line[600];
+    asp_measured *m = asp_measured_read_memory(text, strlen(text), "made.csv", &err);
+    if (!CHECK(m != NULL, "%s", m ? "" : asp_error_text(&err, line, sizeof line)))
+        exit(1);
+    return m;
+}
+
+/* One channel: alpha, eta, diffuse and specular of ggx, from rows at different angles. */
+static asp_measured *grey(size_t rows, double scale)
+{
+    char text[8000] = "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,f\n";
+    for (size_t i = 0; i < rows; i++)
+        sprintf(text + strlen(text), "%d,0,%d,180,%.17g\n", 10 + 7 * (int)(i % 8), (int)(i * 11 % 70),
+                scale * (1 + random_number()));
+    return of_text(text);
+}
+
+static void too_little(void)
+{
+    const asp_model *models[] = { asp_find_model(NULL, "ggx"), NULL };
+    asp_fit_options o = { .models = models, .specular_limit = 2 };
+    asp_error err;
+    asp_fit_result *r = NULL;
+    size_t n = 0;
+    asp_measured *m = grey(40, 0);
+    CHECK(asp_fit(m, &o, &r, &n, &err) == ASP_EFORMAT && strstr(err.reason, "every value is 0"),
+          "zeros: %s", err.reason);
+    asp_measured_free(m);
+    m = grey(3, 1);
+    CHECK(asp_fit(m, &o, &r, &n, &err) == ASP_EFORMAT && strstr(err.reason, "3 values")
+          && strstr(err.reason, "4 parameters"), "three values: %s", err.reason);
+    asp_measured_free(m);
+    CHECK(!r && !n, "results written on failure");
+    m = grey(4, 1);
+    if (CHECK(asp_fit(m, &o, &r, &n, &err) == ASP_OK, "four values: %s", err.reason)) {
+        CHECK(r->parameter_count == 4, "one channel: %zu parameters", r->parameter_count);
+        for (size_t k = 0; k < r->parameter_count; k++)
+            CHECK(isinf(r->parameter[k].uncertainty) && !r->parameter[k].determined,
+                  "four values: %s +- %g", r->parameter[k].name, r->parameter[k].uncertainty);
+    }
+    printf("too little: zeros and three values refused, four values determine nothing\n");
+    free(r);
+    asp_measured_free(m);
+}
+
 /* ------------------------------------------------------------------ refusals */
 
 static int stop(void *context, double done)
@@ -356,6 +406,7 @@ int main(void)
     uncertainties_hold("nad");
     uncertainties_hold("log");
     undetermined_is_said();
+    too_little();
     refusals();
     free(grid);
     return finish();

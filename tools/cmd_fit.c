@@ -141,6 +141,7 @@ static int spheres(const job *j, report *r)
 
 /* ------------------------------------------------------------------ writing */
 
+/* Signals are held by the callers. */
 static int write_text(const char *folder, const char *name, const char *text, size_t size)
 {
     asp_error err;
@@ -149,9 +150,7 @@ static int write_text(const char *folder, const char *name, const char *text, si
     if (!path)
         return cmd_failed("out of memory");
     snprintf(path, room, "%s/%s", folder, name);
-    cmd_hold();
     asp_status status = asp_file_write(path, text, size, &err);
-    cmd_release();
     free(path);
     return status ? cmd_error(&err) : CMD_OK;
 }
@@ -174,6 +173,29 @@ static int write_page(const char *folder, const char *name, page *p)
     return status;
 }
 
+/* The folders are made only now, and go again if nothing comes to lie in them: an interrupted or
+ * failed fit leaves none. Signals wait until both files are complete. */
+static int write_files(const job *j, const char *folder, const char *json, page *html)
+{
+    int outer = 0, inner = 0;
+    cmd_hold();
+    int status = j->several ? make_folder(j->folder, &outer) : CMD_OK;
+    if (!status)
+        status = make_folder(folder, &inner);
+    if (!status)
+        status = write_text(folder, "fit.json", json, strlen(json));
+    if (!status)
+        status = write_page(folder, "report.html", html);
+    if (status && inner && rmdir(folder)) {
+        /* not empty: one of the two is there */
+    }
+    if (status && outer && rmdir(j->folder)) {
+        /* as above */
+    }
+    cmd_release();
+    return status;
+}
+
 /* Both files are complete in memory before the first is written. */
 static int write_report(const job *j, report *r, const char *folder)
 {
@@ -183,12 +205,8 @@ static int write_report(const job *j, report *r, const char *folder)
     int status = text ? spheres(j, r) : cmd_failed("out of memory");
     if (!status) {
         report_html(r, &html);
-        status = html.broken ? cmd_failed("out of memory") : make_folder(folder, NULL);
+        status = html.broken ? cmd_failed("out of memory") : write_files(j, folder, text, &html);
     }
-    if (!status)
-        status = write_text(folder, "fit.json", text, strlen(text));
-    if (!status)
-        status = write_page(folder, "report.html", &html);
     page_free(&html);
     free(text);
     json_decref(json);
@@ -230,6 +248,17 @@ static char *summary_of(const report *r)
     return p.text;
 }
 
+/* After each of several, so that a failure or an interrupt later leaves what is finished listed. */
+static int write_index(const job *j)
+{
+    page index = { 0 };
+    report_index(j->entry, j->entries, &index);
+    cmd_hold();
+    int status = write_page(j->folder, "index.html", &index);
+    cmd_release();
+    return status;
+}
+
 static int show(job *j, report *r)
 {
     char name[256], *folder;
@@ -248,7 +277,7 @@ static int show(job *j, report *r)
             memcpy(e->name, name, sizeof e->name);
             e->summary = summary_of(r);
             e->cells = r->count;
-            status = e->summary ? CMD_OK : cmd_failed("out of memory");
+            status = e->summary ? write_index(j) : cmd_failed("out of memory");
         }
     }
     if (!status && j->json)
@@ -329,23 +358,31 @@ static int fit_fabricated(job *j)
 
 static int finish(job *j)
 {
-    int status = CMD_OK;
-    if (j->folder && j->several) {
-        page index = { 0 };
-        report_index(j->entry, j->entries, &index);
-        status = write_page(j->folder, "index.html", &index);
+    if (!j->json)
+        return CMD_OK;
+    json_t *out = json_pack("{s:O}", "fits", j->all);
+    return out ? cmd_print_json(out) : cmd_failed("out of memory");
+}
+
+/* Can the folder be made, or written to? Nothing is left of the attempt. */
+static int try_folder(const char *path)
+{
+    int made = 0;
+    cmd_hold();
+    int status = make_folder(path, &made);
+    if (!status && access(path, W_OK | X_OK))
+        status = cmd_failed("%s: cannot write there: %s", path, strerror(errno));
+    if (made && rmdir(path)) {
+        /* somebody else has put something there meanwhile */
     }
-    if (!status && j->json) {
-        json_t *out = json_pack("{s:O}", "fits", j->all);
-        status = out ? cmd_print_json(out) : cmd_failed("out of memory");
-    }
+    cmd_release();
     return status;
 }
 
 static int all_of(const cmd_args *args, job *j)
 {
     size_t files = cmd_operand_count(args);
-    int status = CMD_OK, made = 0, fabricate = cmd_given(args, "fabricate") > 0;
+    int status = CMD_OK, fabricate = cmd_given(args, "fabricate") > 0;
     if (!files && !fabricate)
         return cmd_usage("fit: name a measurement, or give --fabricate");
     j->several = files + (size_t)fabricate > 1;
@@ -357,16 +394,13 @@ static int all_of(const cmd_args *args, job *j)
         if (access(cmd_operand(args, i), R_OK))
             status = cmd_failed("%s: %s", cmd_operand(args, i), strerror(errno));
     if (!status && j->folder)
-        status = make_folder(j->folder, &made);
+        status = try_folder(j->folder);
     if (!status && fabricate)
         status = fit_fabricated(j);
     for (size_t i = 0; i < files && !status; i++)
         status = fit_file(j, cmd_operand(args, i));
     if (!status)
         status = finish(j);
-    if (status && made && rmdir(j->folder)) {
-        /* not empty: what was finished before the failure stays */
-    }
     return status;
 }
 
@@ -427,6 +461,7 @@ const cmd_record cmd_fit = {
     "log_relative   rms of log((m + 0.001/sr) / (d + 0.001/sr)): peak and tail alike\n"
     "\n"
     "Stops at the first file that cannot be read or fitted; nothing is written for\n"
-    "it. The same file, options and seed give the same numbers.",
+    "it, and the index lists those before it. The same file, options and seed give\n"
+    "the same numbers.",
     options, run
 };

@@ -32,17 +32,10 @@ const char *report_number(const asp_fit_parameter *p, const char *sign, char *bu
     else if (isinf(p->uncertainty))
         snprintf(buffer, size, "%.4g (free)", p->value);
     else if (!p->determined)
-        snprintf(buffer, size, "%.3g (%.2g..%.2g)", p->value, p->low, p->high);
+        snprintf(buffer, size, "%.3g (%.3g..%.3g)", p->value, p->low, p->high);
     else
         snprintf(buffer, size, "%.*f %s %.*f", d, p->value, sign, d, p->uncertainty);
     return buffer;
-}
-
-/* Green and blue repeat red where the file has one channel. */
-static int one_of_many(const char *name)
-{
-    const char *end = strrchr(name, '_');
-    return end && (!strcmp(end, "_g") || !strcmp(end, "_b"));
 }
 
 const char *report_mask_name(int mask)
@@ -73,11 +66,11 @@ static void row_of(const report *r, const char *name, FILE *file)
     fputc('\n', file);
 }
 
-/* Alpha, then what only some models have, then what all share. */
+/* Alpha, then what only some models have, then what all share (as many colours as channels). */
 size_t report_rows(const report *r, const char **out, size_t room)
 {
-    static const char *const shared[] = { "eta", "diffuse_r", "diffuse_g", "diffuse_b", "specular_r",
-                                          "specular_g", "specular_b" };
+    static const char *const shared[] = { "eta", "diffuse", "diffuse_r", "diffuse_g", "diffuse_b",
+                                          "specular", "specular_r", "specular_g", "specular_b" };
     size_t n = 0;
     if (n < room)
         out[n++] = "alpha";
@@ -91,7 +84,7 @@ size_t report_rows(const report *r, const char **out, size_t room)
                 out[n++] = name;
         }
     for (size_t k = 0; k < sizeof shared / sizeof *shared; k++)
-        if (n < room && (r->info.channels != 1 || !one_of_many(shared[k])))
+        if (n < room && r->count && report_find(&r->result[0], shared[k]))
             out[n++] = shared[k];
     return n;
 }

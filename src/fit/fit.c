@@ -154,9 +154,11 @@ static void put_number(text *t, const char *before, double value)
     }
 }
 
-static void put_colour(text *t, const char *before, const double *rgb)
+static void put_colour(text *t, const char *before, const double *rgb, int channels)
 {
     put_number(t, before, rgb[0]);
+    if (channels == 1)
+        return;
     put_number(t, "/", rgb[1]);
     put_number(t, "/", rgb[2]);
 }
@@ -168,8 +170,8 @@ static void write_spec(const aspi_problem *p, const aspi_point *at, char *out, s
     text t = { out, size, 0 };
     const aspi_axis *axis = p->box.axis;
     int eta = p->box.n - 1, own_alpha = 0;
-    put_colour(&t, "lambert_specular:diffuse=", at->colour);
-    put_colour(&t, ",specular=", at->colour + 3);
+    put_colour(&t, "lambert_specular:diffuse=", at->colour, p->set->channels);
+    put_colour(&t, ",specular=", at->colour + 3, p->set->channels);
     put_number(&t, ",eta=", aspi_axis_value(&axis[eta], at->b[eta]));
     if (p->mask) {
         put(&t, ",mask=");
@@ -301,6 +303,29 @@ static asp_status check(job *j, const asp_fit_options *options, asp_error *err)
     return ASP_OK;
 }
 
+/* Data from which nothing can follow. */
+static asp_status check_data(const job *j, const asp_measurement *item, size_t n, int channels,
+                             asp_error *err)
+{
+    size_t values = n * (size_t)channels, i = 0;
+    char reason[160];
+    while (i < n && !(item[i].f.r > 0 || item[i].f.g > 0 || item[i].f.b > 0))
+        i++;
+    if (i == n)
+        return asp_fail(err, ASP_EFORMAT, "", "every value is 0: there is nothing to fit");
+    for (size_t k = 0; k < j->count; k++) {
+        aspi_box box = aspi_box_make(j->model[k]);
+        size_t parameters = (size_t)box.n + 2 * (size_t)channels;
+        if (values >= parameters)
+            continue;
+        snprintf(reason, sizeof reason, "%zu value%s below 80 degrees cannot determine the %zu "
+                 "parameters of '%s'", values, values == 1 ? "" : "s", parameters,
+                 j->model[k]->name);
+        return asp_fail(err, ASP_EFORMAT, "", reason);
+    }
+    return ASP_OK;
+}
+
 asp_status asp_fit(const asp_measured *measured, const asp_fit_options *options,
                    asp_fit_result **results, size_t *count, asp_error *err)
 {
@@ -319,12 +344,15 @@ asp_status asp_fit(const asp_measured *measured, const asp_fit_options *options,
         if (err)
             *err = why;
     }
+    int channels = status ? 0 : asp_measured_get_info(measured).channels;
+    if (!status)
+        status = check_data(j, item, n, channels, err);
     if (!status && !(out = calloc(j->count, sizeof *out)))
         status = asp_fail(err, ASP_ENOMEM, "", "not enough memory for the results");
     if (!status)
-        status = aspi_fit_set_make(item, n, 1, &j->fine, err);
+        status = aspi_fit_set_make(item, n, 1, channels, &j->fine, err);
     if (!status)
-        status = aspi_fit_set_make(item, n, 1 + n / COARSE, &j->coarse, err);
+        status = aspi_fit_set_make(item, n, 1 + n / COARSE, channels, &j->coarse, err);
     if (!status) {
         aspi_fit_set_weights(&j->fine, j->loss);
         aspi_fit_set_weights(&j->coarse, j->loss);

@@ -27,6 +27,7 @@
 
 typedef struct aspi_fit_set {
     size_t  n;
+    int     channels;                            /* 1: the same three times */
     double *memory;                              /* owns all below */
     double *wi_x, *wi_y, *wi_z, *wo_x, *wo_y, *wo_z;
     double *cos_d;                               /* between wi and the half vector */
@@ -35,7 +36,7 @@ typedef struct aspi_fit_set {
 } aspi_fit_set;
 
 /* Every `stride`-th of the geometries. */
-asp_status aspi_fit_set_make(const asp_measurement *item, size_t count, size_t stride,
+asp_status aspi_fit_set_make(const asp_measurement *item, size_t count, size_t stride, int channels,
                              aspi_fit_set *out, asp_error *err);
 void aspi_fit_set_free(aspi_fit_set *set);
 

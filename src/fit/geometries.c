@@ -92,7 +92,7 @@ asp_measurement *asp_fit_geometries(const asp_measured *measured, size_t *count,
     return out;
 }
 
-asp_status aspi_fit_set_make(const asp_measurement *item, size_t count, size_t stride,
+asp_status aspi_fit_set_make(const asp_measurement *item, size_t count, size_t stride, int channels,
                              aspi_fit_set *out, asp_error *err)
 {
     size_t n = (count + stride - 1) / stride;
@@ -104,6 +104,7 @@ asp_status aspi_fit_set_make(const asp_measurement *item, size_t count, size_t s
     for (size_t a = 0; a < sizeof array / sizeof array[0]; a++)
         *array[a] = memory + a * n;
     out->n = n;
+    out->channels = channels;
     out->memory = memory;
     for (size_t i = 0; i < n; i++) {
         const asp_measurement *m = &item[i * stride];

@@ -7,7 +7,12 @@
  *                       r/s with |r/s| < 1/2 and divided by s, the mean |r| of the neighbouring
  *                       geometries (Powell 1984 with a local scale)
  * and g the derivative of a residual by the parameters: the places b of the axes and the colours. A
- * parameter at an end of its range has the derivative towards the inside. */
+ * parameter at an end of its range has the derivative towards the inside. Data of one channel have two
+ * colours, not six.
+ *
+ * Nothing is said (infinity) of a parameter without effect, of one whose effect the others imitate to
+ * rounding, and of any where there are no more geometries than parameters: B is then 0 for what is
+ * not known. */
 #include "fit.h"
 
 #include <stdio.h>
@@ -17,11 +22,12 @@
 #define P_LIMIT ASP_FIT_PARAMETERS
 #define WINDOW 8                       /* neighbours on either side */
 #define STEP 1e-4                      /* of b in the differences */
+#define INFLATION 1e10                 /* of a variance by the other parameters: nothing is left */
 
 typedef struct work {
     aspi_problem *p;
     const aspi_point *at;
-    int     axes, count;
+    int     axes, channels, count;
     size_t  n;
     double *d_axis;                    /* axes x n: dS/db */
     double *h, *psi, *slope;           /* 3 n each */
@@ -94,13 +100,13 @@ static void accumulate(work *w)
 {
     for (size_t i = 0; i < w->n; i++) {
         double G[P_LIMIT] = { 0 };
-        for (int c = 0; c < 3; c++) {
+        for (int c = 0; c < w->channels; c++) {
             size_t j = (size_t)c * w->n + i;
             double g[P_LIMIT] = { 0 };
             for (int k = 0; k < w->axes; k++)
                 g[k] = w->slope[j] * w->at->colour[3 + c] * w->d_axis[(size_t)k * w->n + i];
             g[w->axes + c] = w->slope[j] * ASPI_INV_PI;
-            g[w->axes + 3 + c] = w->slope[j] * w->p->specular[i];
+            g[w->axes + w->channels + c] = w->slope[j] * w->p->specular[i];
             for (int a = 0; a < w->count; a++) {
                 G[a] += w->psi[j] * g[a];
                 for (int b = 0; b < w->count; b++)
@@ -114,8 +120,9 @@ static void accumulate(work *w)
 }
 
 /* Replaces A by its inverse. Scaled to a unit diagonal; a ridge of rounding size keeps directions
- * that the data do not see finite, and large. Rows without any information become 0. */
-static void invert(double A[P_LIMIT][P_LIMIT], int n)
+ * that the data do not see finite, and large: `blind` is set for them and for rows without any
+ * information, which become 0. */
+static void invert(double A[P_LIMIT][P_LIMIT], int n, int *blind)
 {
     double s[P_LIMIT], M[P_LIMIT][2 * P_LIMIT] = { { 0 } };
     for (int a = 0; a < n; a++)
@@ -134,17 +141,22 @@ static void invert(double A[P_LIMIT][P_LIMIT], int n)
             for (int k = a; k < 2 * n; k++)
                 M[b][k] -= q * M[a][k];
         }
-    for (int a = 0; a < n; a++)
+    for (int a = 0; a < n; a++) {
+        blind[a] = !(s[a] > 0) || !(M[a][n + a] / M[a][a] < INFLATION);
         for (int b = 0; b < n; b++)
             A[a][b] = M[a][n + b] / M[a][a] * s[a] * s[b];
+    }
 }
 
-static void sandwich(work *w, double cov[P_LIMIT][P_LIMIT])
+static void sandwich(work *w, double cov[P_LIMIT][P_LIMIT], int *blind)
 {
     double AB[P_LIMIT][P_LIMIT] = { { 0 } };
     int n = w->count;
-    double few = w->n > (size_t)n ? (double)w->n / (double)(w->n - (size_t)n) : INFINITY;
-    invert(w->A, n);
+    int few = w->n <= (size_t)n;
+    double more = few ? 1 : (double)w->n / (double)(w->n - (size_t)n);
+    invert(w->A, n, blind);
+    for (int a = 0; a < n; a++)
+        blind[a] |= few;
     for (int a = 0; a < n; a++)
         for (int b = 0; b < n; b++)
             for (int k = 0; k < n; k++)
@@ -154,7 +166,7 @@ static void sandwich(work *w, double cov[P_LIMIT][P_LIMIT])
             double sum = 0;
             for (int k = 0; k < n; k++)
                 sum += AB[a][k] * w->A[k][b];
-            cov[a][b] = few * sum;
+            cov[a][b] = more * sum;
         }
 }
 
@@ -175,27 +187,35 @@ static void describe_axis(const aspi_axis *axis, double b, double sd, asp_fit_pa
     out->at_bound = b <= axis->b_low + margin ? -1 : b >= axis->b_high - margin ? 1 : 0;
     if (inverse)
         out->at_bound = -out->at_bound;
-    out->determined = sd < 0.25 * (axis->b_high - axis->b_low);
+    double least = aspi_axis_value(axis, axis->b_low), most = aspi_axis_value(axis, axis->b_high);
+    int leaves = b - sd < axis->b_low || b + sd > axis->b_high
+              || out->value - out->uncertainty < fmin(least, most)
+              || out->value + out->uncertainty > fmax(least, most);
+    out->determined = sd < 0.25 * (axis->b_high - axis->b_low) && (out->at_bound || !leaves);
 }
 
-static void describe_colour(int k, double value, double sd, double highest,
+#define OPEN 0.05           /* a colour known better than this may reach past the end of its range */
+
+static void describe_colour(const char *name, double value, double sd, double highest,
                             asp_fit_parameter *out)
 {
-    static const char *const name[6] = { "diffuse_r", "diffuse_g", "diffuse_b",
-                                         "specular_r", "specular_g", "specular_b" };
-    snprintf(out->name, sizeof out->name, "%s", name[k]);
+    snprintf(out->name, sizeof out->name, "%s", name);
     out->value = value;
     out->uncertainty = sd;
     out->low = fmax(0, value - sd);
     out->high = fmin(value + sd, highest);
     out->at_bound = value > 0 ? value < highest ? 0 : 1 : -1;
-    out->determined = sd < 0.25 || sd < 0.5 * value;
+    int leaves = sd > OPEN && (value - sd < 0 || value + sd > highest);
+    out->determined = (sd < 0.25 || sd < 0.5 * value) && (out->at_bound || !leaves);
 }
 
 asp_status aspi_uncertainties(aspi_problem *p, const aspi_point *at, asp_fit_result *out,
                               asp_error *err)
 {
-    int axes = p->box.n;
+    static const char *const grey[] = { "diffuse", "specular" };
+    static const char *const rgb[] = { "diffuse_r", "diffuse_g", "diffuse_b", "specular_r",
+                                       "specular_g", "specular_b" };
+    int axes = p->box.n, channels = p->set->channels;
     size_t n = p->set->n;
     work *w = calloc(1, sizeof *w);
     double *memory = malloc(((size_t)axes + 9) * n * sizeof *memory);
@@ -207,7 +227,8 @@ asp_status aspi_uncertainties(aspi_problem *p, const aspi_point *at, asp_fit_res
     w->p = p;
     w->at = at;
     w->axes = axes;
-    w->count = axes + 6;
+    w->channels = channels;
+    w->count = axes + 2 * channels;
     w->n = n;
     w->d_axis = memory;
     w->h = memory + (size_t)axes * n;
@@ -217,18 +238,18 @@ asp_status aspi_uncertainties(aspi_problem *p, const aspi_point *at, asp_fit_res
     residuals(w);
     accumulate(w);
     int blind[P_LIMIT];
-    for (int a = 0; a < w->count; a++)
-        blind[a] = !(w->A[a][a] > 0);
     double cov[P_LIMIT][P_LIMIT];
-    sandwich(w, cov);
+    sandwich(w, cov, blind);
     out->parameter_count = (size_t)w->count;
     for (int a = 0; a < w->count; a++) {
         double sd = blind[a] ? INFINITY : sqrt(fmax(0, cov[a][a]));
+        int k = a - axes, specular = k >= channels;
         if (a < axes)
             describe_axis(&p->box.axis[a], at->b[a], sd, &out->parameter[a]);
         else
-            describe_colour(a - axes, at->colour[a - axes], sd,
-                            a - axes < 3 ? DIFFUSE_HIGH : p->specular_high, &out->parameter[a]);
+            describe_colour((channels == 1 ? grey : rgb)[k],
+                            at->colour[specular ? 3 + k - channels : k], sd,
+                            specular ? p->specular_high : DIFFUSE_HIGH, &out->parameter[a]);
         for (int b = 0; b < w->count; b++) {
             double both = sqrt(cov[a][a] * cov[b][b]);
             out->correlation[a * P_LIMIT + b] = blind[a] || blind[b] || !(both > 0)
