@@ -37,10 +37,10 @@ enum {
     STUDENT_Y_WIDTH = 16,        /* sqrt(n/m) */
     STUDENT_INV_BETA = 17,
     STUDENT_BELOW = 18,          /* 1/(2n - 1) */
-    STUDENT_P32 = 32,            /* 12 coefficients of P for float32, */
+    STUDENT_P32 = 32,            /* 12 coefficients of (1 - P)/(1 - d) for float32, */
     STUDENT_B32 = 46,            /* 12 of B, */
     STUDENT_Y32 = 58,            /* 12 of the quantile's R; */
-    STUDENT_P64 = 72,            /* 24 of P for float64, */
+    STUDENT_P64 = 72,            /* 24 of the same for float64, */
     STUDENT_B64 = 96,            /* 24 of B, */
     STUDENT_Y64 = 120            /* 26 of R */
 };

@@ -71,7 +71,7 @@ ASP_FN asp_real student_decay_exact(const asp_shape *k, int power, asp_real a, a
 #endif
 }
 
-/* P at d. */
+/* P at d, as 1 - (1 - d) times a polynomial: exact at d = 1, the edge-on view. */
 ASP_FN asp_real student_p(const asp_shape *k, asp_real d)
 {
     asp_real t = d * k->table[STUDENT_SCALE] + k->table[STUDENT_OFFSET];
@@ -86,7 +86,7 @@ ASP_FN asp_real student_p(const asp_shape *k, asp_real d)
     STUDENT_START(t, c, 11)
     STUDENT_STEP5(c, 0)
 #endif
-    return odd * t + even;
+    return R(1.0) - (R(1.0) - d) * (odd * t + even);
 }
 
 /* Density of normals: (1 + r2/(n z2))^-gamma / (pi z2^2) (Ribardiere et al. 2017, eq. 11).
@@ -110,9 +110,8 @@ ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
     asp_real den = aspi_max(s2, ASP_PRECISION == 64 ? R(1e-200) : R(1e-24));
     asp_real g = aspi_sqrt(STUDENT_GAUSSIAN ? den : den + w2 * k->table[STUDENT_INVN]);
     asp_real ag = R(STUDENT_A) * g;
-    asp_real sum = h + ag;
     /* two divisions: one for both would make the power wait for the root */
-    asp_real d = ag / sum, r = R(1.0) / den;
+    asp_real d = ag / (h + ag), r = R(1.0) / den;
     asp_real tail = student_decay(k, STUDENT_N, w2 * r) * (d * d) * student_p(k, d)
                   * (g * k->table[STUDENT_M0]);
     return aspi_max(w, R(0.0)) + (s2 > R(0.0) ? tail : R(0.0));

@@ -112,7 +112,7 @@ static void student_split(double x, double *out)
     out[2] = x - out[1];
 }
 
-/* Values of P and B at the nodes for one n. */
+/* Values of (1 - P)/(1 - d) and B at the nodes for one n. */
 static void student_nodes(double n, double m0, double p[STUDENT_NODES], double b[STUDENT_NODES])
 {
     const double a = STUDENT_A;
@@ -125,7 +125,7 @@ static void student_nodes(double n, double m0, double p[STUDENT_NODES], double b
         double g = 1 / sqrt((1 - h / root) * (1 + h / root));
         double t_m, j_m;
         student_exact(n, m0, h * g, &t_m, &j_m);
-        p[i] = j_m / (d * d);
+        p[i] = (1 - j_m / (d * d)) / (1 - d);
         b[i] = t_m * g / d * (2 * n / (2 * n - 1));
     }
 }
