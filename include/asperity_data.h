@@ -250,14 +250,15 @@ const char *asp_fit_reason_text(asp_fit_reason reason);
 #define ASP_FIT_PARAMETERS 16
 
 typedef struct asp_fit_parameter {
-    char   name[24];          /* "alpha", "gamma", "eta", "diffuse_r", ... */
+    char   name[24];          /* "alpha", "gamma", "eta", "diffuse_r", ...; data of one
+                                 channel have "diffuse" and "specular" */
     double value;
     double uncertainty;       /* one standard deviation; infinity where the data say nothing */
     double low, high;         /* value minus and plus one standard deviation, within the range and in
                                  the scale of the search: 1/gamma for a range that ends at infinity */
     int    at_bound;          /* -1 at the lower end of its range, 1 at the upper, 0 inside */
-    int    determined;        /* 0: the interval spans a large part of the range; the value is then
-                                 one of many that fit as well */
+    int    determined;        /* 0: the interval spans a large part of the range or, inside it, reaches
+                                 past an end; the value is then one of many that fit as well */
 } asp_fit_parameter;
 
 typedef struct asp_fit_result {
@@ -310,7 +311,8 @@ asp_measurement *asp_fit_geometries(const asp_measured *measured, size_t *count,
  * at the optimum, A the curvature of the loss, B the scatter of its gradient over geometries. They
  * assume independent errors; where the model itself does not fit they are too small.
  *
- * ASP_EINVAL, ASP_EUNKNOWN (loss), ASP_EFORMAT (no usable geometry), ASP_ENOMEM, ASP_ECANCELLED. */
+ * ASP_EINVAL, ASP_EUNKNOWN (loss), ASP_EFORMAT (no usable geometry, no value above 0, fewer values
+ * than a model has parameters), ASP_ENOMEM, ASP_ECANCELLED. */
 asp_status asp_fit(const asp_measured *measured, const asp_fit_options *options,
                    asp_fit_result **results, size_t *count, asp_error *err);
 

@@ -33,6 +33,14 @@ def measurement(name, ndf):
         file.write(made.replace("brdf_", ""))
 
 
+def listing(name, rows):
+    """Rows of theta_i, theta_o on the far side, f; one channel."""
+    with open(name, "w") as file:
+        file.write("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,f\n")
+        for i, o, f in rows:
+            file.write("%.17g,0,%.17g,180,%.17g\n" % (i, o, f))
+
+
 class Page(html.parser.HTMLParser):
     """Checks that elements nest, and gathers what a page refers to."""
     void = {"meta", "br", "img", "link", "input", "hr"}
@@ -95,6 +103,37 @@ def one_file():
         check(open("out/" + name).read() == open("again/" + name).read(), name + " differs")
 
 
+def one_channel():
+    """A listing of one channel with a peak that no lobe reaches, at theta_h = 0."""
+    rows = []
+    for i in range(5, 75, 5):
+        for o in range(0, 76):
+            h = (o - i) / 2
+            rows.append((i, o, 500 if h == 0 else 0.03 + 6 / (1 + (h / 3) ** 2) ** 2))
+    listing("grey.csv", rows)
+    done = run("fit", "grey.csv", "-o", "out", "--spp", "1", status=0)
+    text = open("out/fit.json").read()
+    check(not re.search("(diffuse|specular)_[rgb]", done.stdout + text), "channels that do not exist")
+    for result in json.loads(text)["results"]:
+        names = [p["name"] for p in result["parameters"]]
+        check(names[-3:] == ["eta", "diffuse", "specular"], "parameters: %s" % names)
+        check(len(result["correlation"]) == len(names), "correlation: %d rows" % len(names))
+        run("eval", "brdf", "--material", result["spec"], stdin=directions(), status=0)
+        for p in result["parameters"]:
+            if p["name"] == "eta" and p["determined"] and not p["at_bound"]:
+                check(p["value"] - p["uncertainty"] >= 1.05 and p["value"] + p["uncertainty"] <= 100,
+                      "eta %g +- %g leaves its range" % (p["value"], p["uncertainty"]))
+    page = "".join(read_page("out/report.html").words)
+    check(not re.search("(diffuse|specular)_[rgb]", page), "channels in the page")
+    check("500" in page and "too low" in page, "the page says that the peak is missed")
+    check(page.count("drawn at the left edge") == 1, "what becomes of theta_h = 0")
+    # many values, but of one geometry: nothing follows of the lobe
+    listing("same.csv", [(30, 30, 2 + 0.01 * k) for k in range(30)])
+    for result in json.loads(run("fit", "same.csv", "--json", status=0).stdout)["fits"][0]["results"]:
+        check(not [p for p in result["parameters"] if p["determined"] and not p["at_bound"]],
+              "determined by one geometry: %s" % result["parameters"])
+
+
 def several_files():
     os.mkdir("a")
     measurement("a/x.csv", "ggx:alpha=0.3")
@@ -115,7 +154,8 @@ def several_files():
         file.write("wi_x,wi_y\n1,2\n")
     run("fit", "a/x.csv", "bad.csv", "-o", "half", "--ndf", "ggx", "--spp", "1", status=1,
         says=["bad.csv"])
-    check(os.listdir("half") == ["x"], "left behind: %s" % os.listdir("half"))
+    check(sorted(os.listdir("half")) == ["index.html", "x"], "left behind: %s" % os.listdir("half"))
+    check(read_page("half/index.html").refers == ["x/report.html"], "the index of what is finished")
 
 
 def options():
@@ -148,6 +188,12 @@ def refusals():
     os.remove("bad.csv")
     run("fit", "m.csv", "-o", "m.csv", status=1, says=["m.csv"])
     run("fit", "m.csv", "-o", "no/where", status=1, says=["no/where"])
+    listing("zero.csv", [(i, o, 0) for i in range(0, 60, 10) for o in range(0, 60, 5)])
+    listing("few.csv", [(30, 30, 2)])
+    run("fit", "zero.csv", "-o", "out", status=1, says=["zero.csv", "every value is 0"])
+    run("fit", "few.csv", "-o", "out", status=1, says=["few.csv", "1 value", "4 parameters", "'ggx'"])
+    os.remove("zero.csv")
+    os.remove("few.csv")
     check(os.listdir(".") == ["m.csv"], "left behind: %s" % os.listdir("."))
 
 
@@ -159,7 +205,7 @@ def interrupted():
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)
     check(process.returncode == -signal.SIGINT, "status %s" % process.returncode)
-    check(not os.path.exists("out") or not os.listdir("out"), "left behind: %s" % os.listdir("."))
+    check(not os.path.exists("out"), "left behind: %s" % os.listdir("."))
 
 
-run_sections([one_file, several_files, options, refusals, interrupted])
+run_sections([one_file, one_channel, several_files, options, refusals, interrupted])

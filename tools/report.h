@@ -71,6 +71,16 @@ size_t report_incidences(const report *r, double *out, size_t room);
 char *report_plane(const report *r, double theta_i, asp_scale scale);
 char *report_profile(const report *r, double theta_d);
 char *report_ratio(const report *r);
+/* Listed geometries nearer to the mirror direction than where the logarithmic axes of the charts
+ * begin: they are drawn at the left edge. The number of them; *edge in degrees. */
+#define REPORT_PROFILE_EDGE 0.2
+#define REPORT_RATIO_EDGE 0.04178
+size_t report_at_edge(const report *r, double edge);
+/* Geometries in bins too small for a median, and fitted over measured of the best fit there. */
+size_t report_left_out(const report *r, double *ratio);
+/* The geometry with the highest measured luminance; theta_h and theta_d of any, radians. */
+const asp_measurement *report_peak(const report *r);
+void report_half_angles(const asp_measurement *m, double *theta_h, double *theta_d);
 
 /* The whole page. */
 void report_html(const report *r, page *out);

@@ -160,6 +160,12 @@ static double lobe_width(const report *r)
     return fmin(fmax(12 * atan(alpha), 2 / DEGREES), 80 / DEGREES);
 }
 
+/* Circles have a white edge, with which many of them wipe each other out. */
+static asp_marker measured_marker(size_t count)
+{
+    return count > 40 ? ASP_MARKER_CROSS : ASP_MARKER_CIRCLE;
+}
+
 static void measured_in_plane(const report *r, curves *c, double theta_i, double from, double to)
 {
     double *x = c->x[0], *y = c->y[0];
@@ -180,7 +186,7 @@ static void measured_in_plane(const report *r, curves *c, double theta_i, double
             }
         }
         c->series[0].dash = ASP_DASH_NONE;
-        c->series[0].marker = ASP_MARKER_CIRCLE;
+        c->series[0].marker = measured_marker(n);
     }
     c->series[0].count = n;
 }
@@ -226,7 +232,7 @@ char *report_plane(const report *r, double theta_i, asp_scale scale)
 #define BAND 4.0               /* listed geometries within so many degrees of theta_d */
 
 /* theta_h, theta_d in radians of any pair of directions. */
-static void half_angles(const asp_measurement *m, double *theta_h, double *theta_d)
+void report_half_angles(const asp_measurement *m, double *theta_h, double *theta_d)
 {
     double x = m->wi.x + m->wo.x, y = m->wi.y + m->wo.y, z = m->wi.z + m->wo.z;
     double length = sqrt(x * x + y * y + z * z);
@@ -250,11 +256,11 @@ static size_t listed_profile(const report *r, curves *c, double theta_d)
     for (size_t i = 0; i < r->geometries; i++) {
         const asp_measurement *m = &r->geometry[i];
         double h, d;
-        half_angles(m, &h, &d);
+        report_half_angles(m, &h, &d);
         if (fabs(d - theta_d) * DEGREES > BAND)
             continue;
         for (size_t k = 0; k < c->count; k++) {
-            c->x[k][n] = h * DEGREES;
+            c->x[k][n] = fmax(h * DEGREES, 1.06 * REPORT_PROFILE_EDGE);
             c->y[k][n] = report_luminance(k ? asp_eval(&r->result[k - 1].material, m->wi, m->wo)
                                                : m->f);
         }
@@ -263,7 +269,7 @@ static size_t listed_profile(const report *r, curves *c, double theta_d)
     for (size_t k = 0; k < c->count; k++) {
         c->series[k].count = n;
         c->series[k].dash = ASP_DASH_NONE;
-        c->series[k].marker = k ? ASP_MARKER_DOT : ASP_MARKER_CIRCLE;
+        c->series[k].marker = k ? ASP_MARKER_DOT : measured_marker(n);
     }
     return n;
 }
@@ -308,7 +314,7 @@ char *report_profile(const report *r, double theta_d)
                         .x = { .label = "θ_{h} [deg]", .scale = ASP_SCALE_LOG },
                         .y = { .label = "f [1/sr]" } };
     log_limits(&c, &chart.y);
-    chart.x.low = r->info.scattered ? 0.2 : PROFILE_LOW;
+    chart.x.low = r->info.scattered ? REPORT_PROFILE_EDGE : PROFILE_LOW;
     chart.x.high = 90;
     return draw(&c, &chart);
 }
@@ -316,6 +322,8 @@ char *report_profile(const report *r, double theta_d)
 /* ------------------------------------------------------------------ model over measured */
 
 #define BINS 24
+#define BIN_LOW 0.03           /* degrees; the first bin reaches down to 0 */
+#define ENOUGH 8               /* geometries in a bin; in the first bin of a list one will do */
 
 typedef struct sample { double theta_h, ratio; } sample;
 
@@ -323,6 +331,78 @@ static int by_ratio(const void *a, const void *b)
 {
     double x = ((const sample *)a)->ratio, y = ((const sample *)b)->ratio;
     return (x > y) - (x < y);
+}
+
+/* One for each geometry with a value above 0. */
+static size_t samples_of(const report *r, size_t k, sample *out)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < r->geometries; i++) {
+        const asp_measurement *m = &r->geometry[i];
+        double f = report_luminance(m->f), h, d;
+        report_half_angles(m, &h, &d);
+        if (f > 0)
+            out[n++] = (sample){ h * DEGREES,
+                                 report_luminance(asp_eval(&r->result[k].material, m->wi, m->wo)) / f };
+    }
+    return n;
+}
+
+static double bin_edge(int b)
+{
+    return BIN_LOW * pow(85 / BIN_LOW, (double)b / BINS);
+}
+
+/* The samples of a bin by their ratio; *enough: is there a median? */
+static size_t bin_of(const report *r, const sample *s, size_t n, int b, sample *out, int *enough)
+{
+    double low = b ? bin_edge(b) : 0, high = bin_edge(b + 1);
+    size_t inside = 0;
+    for (size_t i = 0; i < n; i++)
+        if (s[i].theta_h >= low && s[i].theta_h < high)
+            out[inside++] = s[i];
+    qsort(out, inside, sizeof *out, by_ratio);
+    *enough = inside >= (b || !r->info.scattered ? ENOUGH : 1);
+    return inside;
+}
+
+size_t report_left_out(const report *r, double *ratio)
+{
+    sample *s = malloc((r->geometries + 1) * sizeof *s);
+    sample *left = malloc((r->geometries + 1) * sizeof *left);
+    size_t count = 0, n = s && left ? samples_of(r, r->best, s) : 0;
+    for (int b = 0; b < BINS && n; b++) {
+        int enough;
+        size_t inside = bin_of(r, s, n, b, left + count, &enough);
+        count += enough ? 0 : inside;
+    }
+    if (count) {
+        qsort(left, count, sizeof *left, by_ratio);
+        *ratio = left[count / 2].ratio;
+    }
+    free(s);
+    free(left);
+    return count;
+}
+
+size_t report_at_edge(const report *r, double edge)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < r->geometries && r->info.scattered; i++) {
+        double h, d;
+        report_half_angles(&r->geometry[i], &h, &d);
+        count += h * DEGREES < edge;
+    }
+    return count;
+}
+
+const asp_measurement *report_peak(const report *r)
+{
+    const asp_measurement *peak = r->geometry;
+    for (size_t i = 1; i < r->geometries; i++)
+        if (report_luminance(r->geometry[i].f) > report_luminance(peak->f))
+            peak = &r->geometry[i];
+    return peak;
 }
 
 /* Median and central 80 % of model/measured in bins of theta_h that hold enough geometries. */
@@ -333,35 +413,28 @@ char *report_ratio(const report *r)
     double (*out)[4][BINS] = malloc((r->count + 1) * sizeof *out);      /* x, median, low, high */
     asp_series series[SERIES];
     size_t count = r->count < SERIES ? r->count : SERIES;
+    double least = 0.03, most = 30;
     char *svg = NULL;
     memset(series, 0, sizeof series);
     for (size_t k = 0; s && bin && out && k < count; k++) {
-        size_t n = 0, used = 0;
-        for (size_t i = 0; i < r->geometries; i++) {
-            const asp_measurement *m = &r->geometry[i];
-            double f = report_luminance(m->f), h, d;
-            half_angles(m, &h, &d);
-            if (f > 0)
-                s[n++] = (sample){ h * DEGREES, report_luminance(asp_eval(&r->result[k].material,
-                                                                          m->wi, m->wo)) / f };
-        }
+        size_t n = samples_of(r, k, s), used = 0;
         for (int b = 0; b < BINS; b++) {
-            double low = 0.03 * pow(85 / 0.03, (double)b / BINS);
-            double high = 0.03 * pow(85 / 0.03, (double)(b + 1) / BINS);
-            size_t inside = 0;
-            for (size_t i = 0; i < n; i++)
-                if (s[i].theta_h >= (b ? low : 0) && s[i].theta_h < high)
-                    bin[inside++] = s[i];
-            if (inside < 8)
+            int enough;
+            size_t inside = bin_of(r, s, n, b, bin, &enough);
+            if (!enough)
                 continue;
-            qsort(bin, inside, sizeof *bin, by_ratio);
-            out[k][0][used] = sqrt(low * high);
-            out[k][1][used] = bin[inside / 2].ratio;
+            double median = bin[inside / 2].ratio;
+            least = median > 0 ? fmin(least, 0.6 * median) : least;
+            most = fmax(most, 1.6 * median);
+            out[k][0][used] = sqrt(bin_edge(b) * bin_edge(b + 1));
+            out[k][1][used] = median;
             out[k][2][used] = bin[inside / 10].ratio;
             out[k][3][used++] = bin[inside - 1 - inside / 10].ratio;
         }
         series[k] = (asp_series){ .label = r->result[k].model->name, .x = out[k][0],
                                   .y = out[k][1], .count = used };
+        if (r->info.scattered)
+            series[k].marker = ASP_MARKER_DOT;
         if (k == r->best) {
             series[k].low = out[k][2];
             series[k].high = out[k][3];
@@ -372,7 +445,7 @@ char *report_ratio(const report *r)
         asp_chart chart = { .title = "fitted over measured",
                             .x = { .label = "θ_{h} [deg]", .scale = ASP_SCALE_LOG },
                             .y = { .label = "f fitted / f measured", .scale = ASP_SCALE_LOG,
-                                   .low = 0.03, .high = 30 },
+                                   .low = fmax(least, 1e-4), .high = fmin(most, 1e4) },
                             .series = series, .series_count = count, .rules = &one, .rule_count = 1,
                             .width = 2 * CHART_WIDTH, .height = CHART_HEIGHT };
         asp_error err;

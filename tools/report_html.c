@@ -76,6 +76,38 @@ static void made_what(const report *r, page *out)
         100 * t->noise);
 }
 
+static void how_far(double fitted, double measured, page *out)
+{
+    double ratio = fitted / measured;
+    if (ratio > 0.8 && ratio < 1.25)
+        page_put(out, "%.3g (%+.0f %%)", fitted, 100 * (ratio - 1));
+    else if (ratio > 0)
+        page_put(out, "%.3g (too %s by a factor of %.*f)", fitted, ratio < 1 ? "low" : "high",
+                 fmax(ratio, 1 / ratio) < 9.95, fmax(ratio, 1 / ratio));
+    else
+        page_add(out, "0");
+}
+
+/* A mean over all geometries hides the few at which a lobe is decided. */
+static void at_peak(const report *r, page *out)
+{
+    const asp_measurement *m = report_peak(r);
+    double f = report_luminance(m->f), h, d;
+    report_half_angles(m, &h, &d);
+    page_put(out, "<p>At the highest measured value, f = %.3g/sr at θ<sub>i</sub> = %.3g°, "
+                  "θ<sub>o</sub> = %.3g°, θ<sub>h</sub> = %.2g°, <b>%s gives ", f,
+             acos(fmin(1, m->wi.z)) / DEGREE, acos(fmin(1, m->wo.z)) / DEGREE,
+             h < 1e-6 ? 0 : h / DEGREE, r->result[r->best].model->name);
+    how_far(report_luminance(asp_eval(&r->result[r->best].material, m->wi, m->wo)), f, out);
+    page_add(out, "</b>");
+    for (size_t i = 0; i < r->count; i++)
+        if (i != r->best) {
+            page_put(out, "%s %s ", i == (r->best == 0) ? ";" : ",", r->result[i].model->name);
+            how_far(report_luminance(asp_eval(&r->result[i].material, m->wi, m->wo)), f, out);
+        }
+    page_add(out, ".</p>\n");
+}
+
 static void verdict(const report *r, page *out)
 {
     const asp_fit_result *b = &r->result[r->best];
@@ -86,6 +118,7 @@ static void verdict(const report *r, page *out)
             page_put(out, "%s %s %.4f", i == (r->best == 0) ? "; " : ",", r->result[i].model->name,
                      r->result[i].error[r->loss_index]);
     page_add(out, ".</p>\n");
+    at_peak(r, out);
 }
 
 /* ------------------------------------------------------------------ pictures */
@@ -117,7 +150,7 @@ static void chart(char *svg, page *out)
 
 static void charts(const report *r, page *out)
 {
-    double angle[3];
+    double angle[3], ratio = 1;
     size_t n = report_incidences(r, angle, 3);
     if (n) {
         page_add(out, "<h2>In the plane of incidence</h2>\n<p class=\"note\">Luminance of f, without "
@@ -131,13 +164,26 @@ static void charts(const report *r, page *out)
         }
     }
     page_add(out, "<h2>Along the half angle</h2>\n<p class=\"note\">Where the distribution of normals "
-                  "shows itself: f over θ<sub>h</sub> at a fixed difference angle, both logarithmic."
-                  "</p>\n<div class=\"pair\">");
+                  "shows itself: f over θ<sub>h</sub> at a fixed difference angle, both logarithmic.");
+    if (report_at_edge(r, REPORT_PROFILE_EDGE))
+        page_put(out, " What was measured below θ<sub>h</sub> = %g°, the mirror direction included, is "
+                      "drawn at the left edge.", REPORT_PROFILE_EDGE);
+    page_add(out, "</p>\n<div class=\"pair\">");
     chart(report_profile(r, 12.5 * DEGREE), out);
     chart(report_profile(r, 57.5 * DEGREE), out);
     page_add(out, "</div>\n<h2>Residual</h2>\n<p class=\"note\">Fitted over measured luminance at all "
                   "geometries of the fit: the median in bins of θ<sub>h</sub>, and for the best fit "
-                  "the band that holds 80 % of them.</p>\n");
+                  "the band that holds 80 % of them.");
+    size_t mirror = report_at_edge(r, REPORT_RATIO_EDGE), left = report_left_out(r, &ratio);
+    if (mirror)
+        page_put(out, " The leftmost point stands for the %zu geometr%s below θ<sub>h</sub> = %.2g°, the "
+                      "mirror direction included.", mirror, mirror == 1 ? "y" : "ies",
+                 REPORT_RATIO_EDGE);
+    if (left)
+        page_put(out, " Not drawn: %zu geometr%s in bins with too few for a median, where the best fit "
+                      "over the measured value is %.3g in the median.", left, left == 1 ? "y" : "ies",
+                 ratio);
+    page_add(out, "</p>\n");
     chart(report_ratio(r), out);
 }
 
