@@ -115,7 +115,7 @@ static void verdict(const report *r, page *out)
              b->error[r->loss_index]);
     for (size_t i = 0; i < r->count; i++)
         if (i != r->best)
-            page_put(out, "%s %s %.4f", i == (r->best == 0) ? "; " : ",", r->result[i].model->name,
+            page_put(out, "%s %s %.4f", i == (r->best == 0) ? ";" : ",", r->result[i].model->name,
                      r->result[i].error[r->loss_index]);
     page_add(out, ".</p>\n");
     at_peak(r, out);
