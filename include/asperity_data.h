@@ -76,7 +76,8 @@ const asp_measurement *asp_measured_geometries(const asp_measured *measured, siz
 
 /* Writers. Each writes to a temporary name beside `path` and renames it when complete: on failure
  * (ASP_EIO) `path` is as it was. merl: the table of doubles (35 MB) with the database's channel
- * scales; other kinds are evaluated at the bin centres. csv: a table by bin index (110 MB), which
+ * scales; other kinds are evaluated at the bin centres, with the half vector at azimuth 0: the table
+ * holds isotropic BRDFs, look at asp_measured_info first. csv: a table by bin index (110 MB), which
  * gives the same table back bit for bit where long double is wider than double, else to one unit in
  * the last place; a list as unit vectors, exact too; rgl sampled on a grid of half and difference
  * angles (45 x 18 x 24, times 12 azimuths if anisotropic). */
