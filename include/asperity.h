@@ -182,7 +182,8 @@ asp_status asp_mask_parse(const char *name, int *mask, asp_error *err);
  * against m.z is 1. 0 for m.z <= 0. */
 double asp_D(const asp_ndf *ndf, asp_vec3 m);
 
-/* Density of slopes, D = P22 / cos^4 (STD paper eq. 5). Any finite slope. */
+/* Density of slopes, D = P22 / cos^4 (STD paper eq. 5). Any finite slope; 0 where the square of the
+ * standard surface's slope is beyond 1e150 (float32: 1e18). */
 double asp_P22(const asp_ndf *ndf, double p_x, double p_y);
 
 /* Projected area of the facets seen from w, per unit flat area: the integral of max(0, w.m) D(m).

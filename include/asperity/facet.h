@@ -20,7 +20,6 @@
 #define aspi_hidden ASP_NAME(aspi_hidden)
 #define aspi_joint ASP_NAME(aspi_joint)
 #define aspi_finite ASP_NAME(aspi_finite)
-#define aspi_steep ASP_NAME(aspi_steep)
 
 /* Facets closer to the vertical than this have density 0; z^4 must not underflow. */
 #define ASP_FLAT (ASP_PRECISION == 64 ? R(1e-70) : R(1e-9))
@@ -54,12 +53,8 @@ ASP_FN asp_real aspi_length2(asp_v3 a) { return a.x * a.x + a.y * a.y; }
 
 ASP_FN asp_real aspi_finite(asp_real x) { return x > ASP_LARGEST ? ASP_LARGEST : x; }
 
-/* Squared slopes beyond this count as this: every density is 0 there, or nearly. */
-ASP_FN asp_real aspi_steep(asp_real r2)
-{
-    const asp_real most = ASP_PRECISION == 64 ? R(1e150) : R(1e18);
-    return r2 > most ? most : r2;
-}
+/* Slopes whose square is beyond this have density 0; the formulas' powers must not overflow. */
+#define ASP_STEEPEST (ASP_PRECISION == 64 ? R(1e150) : R(1e18))
 
 /* The mirror image of wi in a facet. */
 ASP_FN asp_v3 aspi_reflect(asp_v3 wi, asp_v3 m)

@@ -35,7 +35,7 @@
 #define loop_times ASP_NAME(loop_times)
 #define loop_visible_density ASP_NAME(loop_visible_density)
 #define loop_slopes ASP_NAME(loop_slopes)
-#define loop_scale ASP_NAME(loop_scale)
+#define loop_slope_density ASP_NAME(loop_slope_density)
 #endif
 
 #define IN const asp_real *ASP_RESTRICT
@@ -116,11 +116,14 @@ asp_real ASPI_CALL(asp_D)(const asp_shape *k, asp_v3 m)
 asp_real ASPI_CALL(asp_P22)(const asp_shape *k, asp_real p_x, asp_real p_y)
 {
     asp_v3 m, v;
+    asp_real r2, d;
     m.x = -p_x;
     m.y = -p_y;
     m.z = R(1.0);
     v = aspi_facet(k, m);
-    return ASPI_OPS(k).density(k, aspi_steep(aspi_length2(v)), R(1.0)) * k->inv_det;
+    r2 = aspi_length2(v);
+    d = ASPI_OPS(k).density(k, aspi_min(r2, ASP_STEEPEST), R(1.0)) * k->inv_det;
+    return r2 > ASP_STEEPEST ? R(0.0) : d;
 }
 
 asp_real ASPI_CALL(asp_sigma)(const asp_shape *k, asp_v3 w)
@@ -244,7 +247,8 @@ ASP_CLONES static void loop_times(size_t n, const asp_real *a, const asp_real *b
         out[i] = a[i] * b[i];
 }
 
-ASP_CLONES static void loop_slopes(const asp_shape *k, size_t n, IN p_x, IN p_y, OUT r2, OUT z2)
+ASP_CLONES static void loop_slopes(const asp_shape *k, size_t n, IN p_x, IN p_y, OUT all, OUT r2,
+                                   OUT z2)
 {
     size_t i;
     for (i = 0; i < n; i++) {
@@ -252,16 +256,19 @@ ASP_CLONES static void loop_slopes(const asp_shape *k, size_t n, IN p_x, IN p_y,
         m.x = -p_x[i];
         m.y = -p_y[i];
         m.z = R(1.0);
-        r2[i] = aspi_steep(aspi_length2(aspi_facet(k, m)));
+        all[i] = aspi_length2(aspi_facet(k, m));
+        r2[i] = aspi_min(all[i], ASP_STEEPEST);
         z2[i] = R(1.0);
     }
 }
 
-ASP_CLONES static void loop_scale(size_t n, asp_real by, IN a, OUT out)
+ASP_CLONES static void loop_slope_density(size_t n, asp_real by, IN all, IN standard, OUT out)
 {
     size_t i;
-    for (i = 0; i < n; i++)
-        out[i] = a[i] * by;
+    for (i = 0; i < n; i++) {
+        asp_real d = standard[i] * by;
+        out[i] = all[i] > ASP_STEEPEST ? R(0.0) : d;
+    }
 }
 
 /* ---- blocks, one per instruction set */
@@ -315,12 +322,12 @@ void ASPI_CALL(asp_D_n)(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
 void ASPI_CALL(asp_P22_n)(const asp_shape *k, size_t n, const asp_real *p_x, const asp_real *p_y,
                           asp_real *out)
 {
-    asp_real r2[ASPI_BLOCK], z2[ASPI_BLOCK], d[ASPI_BLOCK];
+    asp_real all[ASPI_BLOCK], r2[ASPI_BLOCK], z2[ASPI_BLOCK], d[ASPI_BLOCK];
     size_t i, size;
     ASPI_FOR_BLOCKS(i, size, n) {
-        loop_slopes(k, size, p_x + i, p_y + i, r2, z2);
+        loop_slopes(k, size, p_x + i, p_y + i, all, r2, z2);
         ASPI_OPS(k).density_n(k, size, r2, z2, d);
-        loop_scale(size, k->inv_det, d, out + i);
+        loop_slope_density(size, k->inv_det, all, d, out + i);
     }
 }
 

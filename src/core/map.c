@@ -216,7 +216,7 @@ asp_roughness asp_map_to_roughness(const asp_map *map)
     double det = a * d - b * c;
     asp_roughness out;
     out.alpha_x = q + r;
-    out.alpha_y = aspi_abs(det) / out.alpha_x;
+    out.alpha_y = aspi_min(aspi_abs(det) / out.alpha_x, out.alpha_x);
     /* the left rotation: half the sum of the two angles */
     out.rotation = r > 1e-15 * q && q > 1e-15 * r
                  ? 0.5 * (aspi_atan(f, e) + aspi_atan(g, h)) : (q > r ? 0.0 : 0.5 * aspi_atan(f, e));
