@@ -23,6 +23,7 @@
 #define aspi_product_error ASP_NAME(aspi_product_error)
 #define aspi_exp ASP_NAME(aspi_exp)
 #define aspi_exp_series ASP_NAME(aspi_exp_series)
+#define aspi_exp_split ASP_NAME(aspi_exp_split)
 #define aspi_exp_less ASP_NAME(aspi_exp_less)
 #define aspi_exp_both ASP_NAME(aspi_exp_both)
 #define aspi_expm1 ASP_NAME(aspi_expm1)
@@ -30,6 +31,7 @@
 #define aspi_log_parts ASP_NAME(aspi_log_parts)
 #define aspi_log ASP_NAME(aspi_log)
 #define aspi_log_split ASP_NAME(aspi_log_split)
+#define aspi_lost ASP_NAME(aspi_lost)
 #define aspi_log_near ASP_NAME(aspi_log_near)
 #define aspi_log1p ASP_NAME(aspi_log1p)
 #define aspi_log1p_sum ASP_NAME(aspi_log1p_sum)
@@ -149,21 +151,30 @@ ASP_FN asp_real aspi_exp_series(asp_real r)
     return p * r + R(0.5);
 }
 
-/* e^(x - low), |low| much smaller than 1: e^(x - low) = 2^k e^r, |r| <= ln(2)/2. 0 for x below
- * ASP_EXP_LOW (no subnormal results), e^ASP_EXP_HIGH above ASP_EXP_HIGH: a kernel's exponent is
- * bounded above by construction. */
-ASP_FN asp_real aspi_exp_less(asp_real x, asp_real low)
+/* x = k ln 2 + r, |r| <= ln(2)/2, as .x = r and .y = 2^k; x is taken at the nearer of ASP_EXP_LOW and
+ * ASP_EXP_HIGH where it lies outside them. */
+ASP_FN asp_v2 aspi_exp_split(asp_real x)
 {
     asp_real y = x < R(ASP_EXP_LOW) ? R(ASP_EXP_LOW) : x;
     asp_real z = y > R(ASP_EXP_HIGH) ? R(ASP_EXP_HIGH) : y;
     asp_real shifted = z * R(1.44269504088896340736) + R(ASP_ROUND_SHIFT);
     asp_real k = shifted - R(ASP_ROUND_SHIFT);
-    asp_real r = ((z - k * R(ASP_LN2_HIGH)) - k * R(ASP_LN2_LOW)) - low;
-    asp_real e = R(1.0) + (r + (r * r) * aspi_exp_series(r));
+    asp_v2 out;
+    out.x = (z - k * R(ASP_LN2_HIGH)) - k * R(ASP_LN2_LOW);
     /* the low bits of `shifted` hold k: make 2^k of them */
-    asp_real scale = aspi_from_bits((asp_bits)((aspi_to_bits(shifted) + (asp_bits)ASP_EXPONENT_BIAS)
-                                    << ASP_FRACTION_BITS));
-    return x < R(ASP_EXP_LOW) ? R(0.0) : e * scale;
+    out.y = aspi_from_bits((asp_bits)((aspi_to_bits(shifted) + (asp_bits)ASP_EXPONENT_BIAS)
+                           << ASP_FRACTION_BITS));
+    return out;
+}
+
+/* e^(x - low), |low| much smaller than 1. 0 for x below ASP_EXP_LOW (no subnormal results),
+ * e^ASP_EXP_HIGH above ASP_EXP_HIGH: a kernel's exponent is bounded above by construction. */
+ASP_FN asp_real aspi_exp_less(asp_real x, asp_real low)
+{
+    asp_v2 s = aspi_exp_split(x);
+    asp_real r = s.x - low;
+    asp_real e = R(1.0) + (r + (r * r) * aspi_exp_series(r));
+    return x < R(ASP_EXP_LOW) ? R(0.0) : e * s.y;
 }
 
 ASP_FN asp_real aspi_exp(asp_real x) { return aspi_exp_less(x, R(0.0)); }
@@ -172,17 +183,10 @@ ASP_FN asp_real aspi_exp(asp_real x) { return aspi_exp_less(x, R(0.0)); }
  * ASP_EXP_HIGH as aspi_exp. */
 ASP_FN asp_v2 aspi_exp_both(asp_real x)
 {
-    asp_real y = x < R(ASP_EXP_LOW) ? R(ASP_EXP_LOW) : x;
-    asp_real z = y > R(ASP_EXP_HIGH) ? R(ASP_EXP_HIGH) : y;
-    asp_real shifted = z * R(1.44269504088896340736) + R(ASP_ROUND_SHIFT);
-    asp_real k = shifted - R(ASP_ROUND_SHIFT);
-    asp_real r = (z - k * R(ASP_LN2_HIGH)) - k * R(ASP_LN2_LOW);
-    asp_real scale = aspi_from_bits((asp_bits)((aspi_to_bits(shifted) + (asp_bits)ASP_EXPONENT_BIAS)
-                                    << ASP_FRACTION_BITS));
-    asp_real e = scale * (r + (r * r) * aspi_exp_series(r));
-    asp_v2 out;
-    out.x = x < R(ASP_EXP_LOW) ? R(0.0) : scale + e;
-    out.y = (scale - R(1.0)) + e;
+    asp_v2 s = aspi_exp_split(x), out;
+    asp_real e = s.y * (s.x + (s.x * s.x) * aspi_exp_series(s.x));
+    out.x = x < R(ASP_EXP_LOW) ? R(0.0) : s.y + e;
+    out.y = (s.y - R(1.0)) + e;
     return out;
 }
 
@@ -227,18 +231,25 @@ ASP_FN asp_real aspi_log_parts(asp_real k, asp_real f)
     return k * R(ASP_LN2_HIGH) + (f - (aspi_log_rest(f) - k * R(ASP_LN2_LOW)));
 }
 
-/* x = 2^k (1 + f) with 1 + f within [sqrt(1/2), sqrt(2)), as .x = k and .y = f. */
-ASP_FN asp_v2 aspi_log_split(asp_real x)
+/* x = 2^k (1 + f) with 1 + f within [sqrt(1/2), sqrt(2)), as .x = k, .y = f and .z = 2^-k. */
+ASP_FN asp_v3 aspi_log_split(asp_real x)
 {
     /* exponent field of x / sqrt(1/2): the mantissa then lies in [sqrt(1/2), sqrt(2)) */
     asp_bits b = aspi_to_bits(x);
     asp_bits biased = (asp_bits)(b - (asp_bits)ASP_SQRT_HALF_BITS
                       + ((asp_bits)ASP_EXPONENT_BIAS << ASP_FRACTION_BITS)) >> ASP_FRACTION_BITS;
-    asp_bits m = (asp_bits)(b - ((asp_bits)(biased - (asp_bits)ASP_EXPONENT_BIAS) << ASP_FRACTION_BITS));
-    asp_v2 out;
+    asp_bits shift = (asp_bits)(biased - (asp_bits)ASP_EXPONENT_BIAS) << ASP_FRACTION_BITS;
+    asp_v3 out;
     out.x = aspi_from_bits(biased | aspi_to_bits(R(ASP_INT_SHIFT))) - R(ASP_INT_SHIFT + ASP_EXPONENT_BIAS);
-    out.y = aspi_from_bits(m) - R(1.0);
+    out.y = aspi_from_bits((asp_bits)(b - shift)) - R(1.0);
+    out.z = aspi_from_bits((asp_bits)(aspi_to_bits(R(1.0)) - shift));
     return out;
+}
+
+/* What the sum u = 1 + x rounded away. */
+ASP_FN asp_real aspi_lost(asp_real x, asp_real u)
+{
+    return u < R(2.0) ? x - (u - R(1.0)) : R(1.0) - (u - x);
 }
 
 /* log x for a caller who knows x - 1 better than x: x_less_1 replaces it for x within [sqrt(1/2),
@@ -246,7 +257,7 @@ ASP_FN asp_v2 aspi_log_split(asp_real x)
  * unspecified finite number, and a NaN gives a NaN. */
 ASP_FN asp_real aspi_log_near(asp_real x, asp_real x_less_1)
 {
-    asp_v2 s = aspi_log_split(x);
+    asp_v3 s = aspi_log_split(x);
     asp_real y = aspi_log_parts(s.x, s.x == R(0.0) ? x_less_1 : s.y);
     return x == x ? y : x;
 }
@@ -258,17 +269,8 @@ ASP_FN asp_real aspi_log(asp_real x) { return aspi_log_near(x, x - R(1.0)); }
 ASP_FN asp_real aspi_log1p(asp_real x)
 {
     asp_real u = R(1.0) + x;
-    asp_real lost = u < R(2.0) ? x - (u - R(1.0)) : R(1.0) - (u - x);
-    asp_bits b = aspi_to_bits(u);
-    asp_bits biased = (asp_bits)(b - (asp_bits)ASP_SQRT_HALF_BITS
-                      + ((asp_bits)ASP_EXPONENT_BIAS << ASP_FRACTION_BITS)) >> ASP_FRACTION_BITS;
-    asp_real k = aspi_from_bits(biased | aspi_to_bits(R(ASP_INT_SHIFT)))
-               - R(ASP_INT_SHIFT + ASP_EXPONENT_BIAS);
-    asp_bits shift = (asp_bits)(biased - (asp_bits)ASP_EXPONENT_BIAS) << ASP_FRACTION_BITS;
-    /* 2^-k */
-    asp_real scale = aspi_from_bits((asp_bits)(aspi_to_bits(R(1.0)) - shift));
-    asp_real f = (aspi_from_bits((asp_bits)(b - shift)) - R(1.0)) + lost * scale;
-    return aspi_log_parts(k, f);
+    asp_v3 s = aspi_log_split(u);
+    return aspi_log_parts(s.x, s.y + aspi_lost(x, u) * s.z);
 }
 
 /* log(1 + x + low) as the sum .x + .y, |low| at most an ulp of x >= 0: about twice as many bits as
@@ -276,18 +278,10 @@ ASP_FN asp_real aspi_log1p(asp_real x)
 ASP_FN asp_v2 aspi_log1p_sum(asp_real x, asp_real low)
 {
     asp_real u = R(1.0) + x;
-    asp_real lost = u < R(2.0) ? x - (u - R(1.0)) : R(1.0) - (u - x);
-    asp_bits b = aspi_to_bits(u);
-    asp_bits biased = (asp_bits)(b - (asp_bits)ASP_SQRT_HALF_BITS
-                      + ((asp_bits)ASP_EXPONENT_BIAS << ASP_FRACTION_BITS)) >> ASP_FRACTION_BITS;
-    asp_real k = aspi_from_bits(biased | aspi_to_bits(R(ASP_INT_SHIFT)))
-               - R(ASP_INT_SHIFT + ASP_EXPONENT_BIAS);
-    asp_bits shift = (asp_bits)(biased - (asp_bits)ASP_EXPONENT_BIAS) << ASP_FRACTION_BITS;
-    asp_real scale = aspi_from_bits((asp_bits)(aspi_to_bits(R(1.0)) - shift));
-    asp_real f0 = aspi_from_bits((asp_bits)(b - shift)) - R(1.0);
-    asp_real add = lost * scale;
-    asp_real f = f0 + add;
-    asp_real f_low = (add - (f - f0)) + low * scale;
+    asp_v3 s = aspi_log_split(u);
+    asp_real k = s.x, add = aspi_lost(x, u) * s.z;
+    asp_real f = s.y + add;
+    asp_real f_low = (add - (f - s.y)) + low * s.z;
     asp_real t = aspi_log_rest(f), a, kh;
     asp_v2 out;
     a = f - t;

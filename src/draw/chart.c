@@ -348,13 +348,5 @@ done:
 asp_status asp_chart_write(const asp_chart *chart, const char *path, asp_error *err)
 {
     asp_error mine = { 0 };
-    char *svg = asp_chart_svg(chart, &mine);
-    if (!svg) {
-        if (err)
-            *err = mine;
-        return mine.status;
-    }
-    asp_status status = asp_file_write(path, svg, strlen(svg), err);
-    free(svg);
-    return status;
+    return aspi_svg_write(asp_chart_svg(chart, &mine), path, &mine, err);
 }

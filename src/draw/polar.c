@@ -229,15 +229,7 @@ done:
 asp_status asp_polar_write(const asp_polar *polar, const char *path, asp_error *err)
 {
     asp_error mine = { 0 };
-    char *svg = asp_polar_svg(polar, &mine);
-    if (!svg) {
-        if (err)
-            *err = mine;
-        return mine.status;
-    }
-    asp_status status = asp_file_write(path, svg, strlen(svg), err);
-    free(svg);
-    return status;
+    return aspi_svg_write(asp_polar_svg(polar, &mine), path, &mine, err);
 }
 
 void asp_lobe(asp_brdf_function *f, const void *context, double theta_i, double azimuth,

@@ -262,3 +262,15 @@ void aspi_svg_end(aspi_text *text)
 {
     aspi_text_put(text, "</svg>\n");
 }
+
+asp_status aspi_svg_write(char *svg, const char *path, const asp_error *why, asp_error *err)
+{
+    if (!svg) {
+        if (err)
+            *err = *why;
+        return why->status;
+    }
+    asp_status status = asp_file_write(path, svg, strlen(svg), err);
+    free(svg);
+    return status;
+}

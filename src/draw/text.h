@@ -44,6 +44,9 @@ double aspi_label_width(const char *label, double size);
 void aspi_svg_begin(aspi_text *text, int width, int height, const char *title);
 void aspi_svg_end(aspi_text *text);
 
+/* Writes a finished SVG and frees it; NULL means that making it failed, and `why` says why. */
+asp_status aspi_svg_write(char *svg, const char *path, const asp_error *why, asp_error *err);
+
 /* asp_fail with the reason of errno and the name of the file. */
 asp_status aspi_fail_system(asp_error *err, int number, const char *path, const char *doing);
 

@@ -204,7 +204,7 @@ typedef struct student_search {
 /* log x within 0.03, relatively close near x = 1; for first guesses. */
 ASP_FN asp_real student_rough_log(asp_real x)
 {
-    asp_v2 m = aspi_log_split(x);
+    asp_v3 m = aspi_log_split(x);
     return m.x * R(0.69314718) + m.y * (R(1.0) - R(0.42) * m.y);
 }
 
