@@ -115,14 +115,21 @@ struct asp_model {
     const char *source;           /* paper and equation */
     asp_map_keys keys;
     double alpha;                 /* default roughness of the map */
+    int own_scale;                /* 1: the shape numbers carry a roughness themselves; the map's is a
+                                     stretch, 1 unless given, and fits leave it alone */
+    double area_error;            /* stated relative error of sigma in float64; 0: rounding only */
     const asp_param *params;      /* shape numbers of its own, in the order of shape[]; may be NULL */
     size_t param_count;           /* at most ASP_SHAPE_NUMBERS */
-    /* Fills out->shape and out->table from the checked parameter values, already in out->shape.
-     * NULL if there is nothing to prepare. */
+    /* Fills out->shape and out->table from the checked parameter values, already in out->shape; may
+     * stretch out->map (asp_ndf_stretch), whose inverse is made afterwards. NULL if there is nothing
+     * to prepare. */
     asp_status (*prepare)(asp_ndf *out, asp_error *err);
     asp_ndf_ops  f64;
     asp_ndf_opsf f32;
 };
+
+/* For `prepare`: the standard surface is `by` times as rough as its formulas say. */
+void asp_ndf_stretch(asp_ndf *out, double by);
 
 /* A record is a constant with external linkage, in C++ too. */
 #ifdef __cplusplus

@@ -46,6 +46,25 @@ static asp_status prepare(asp_ndf *out, const double *shape, asp_error *err)
     return model->prepare ? model->prepare(out, err) : ASP_OK;
 }
 
+void asp_ndf_stretch(asp_ndf *out, double by)
+{
+    out->map.m00 *= by;
+    out->map.m01 *= by;
+    out->map.m10 *= by;
+    out->map.m11 *= by;
+}
+
+static void invert(asp_ndf *ndf)
+{
+    const asp_map *map = &ndf->map;
+    double det = map->m00 * map->m11 - map->m01 * map->m10;
+    ndf->i00 = map->m11 / det;
+    ndf->i01 = -map->m01 / det;
+    ndf->i10 = -map->m10 / det;
+    ndf->i11 = map->m00 / det;
+    ndf->inv_det = 1.0 / aspi_abs(det);
+}
+
 asp_status asp_ndf_make(const asp_model *model, const asp_map *map, const double *shape,
                         asp_ndf *out, asp_error *err)
 {
@@ -61,15 +80,12 @@ asp_status asp_ndf_make(const asp_model *model, const asp_map *map, const double
     memset(&ndf, 0, sizeof ndf);
     ndf.model = model;
     ndf.map = *map;
-    ndf.i00 = map->m11 / det;
-    ndf.i01 = -map->m01 / det;
-    ndf.i10 = -map->m10 / det;
-    ndf.i11 = map->m00 / det;
-    ndf.inv_det = 1.0 / aspi_abs(det);
     s = prepare(&ndf, shape, err);
-    if (!s)
-        *out = ndf;
-    return s;
+    if (s)
+        return s;
+    invert(&ndf);
+    *out = ndf;
+    return ASP_OK;
 }
 
 asp_ndff asp_ndf_narrow(const asp_ndf *ndf)

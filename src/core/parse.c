@@ -11,13 +11,25 @@ static const char ellipsoid_keys[] =
     "unknown key; the ellipsoid takes alpha_x alpha_y theta_x theta_y theta_z, or a11 ... a33, or "
     "s11 s12 s13 s22 s23 s33";
 
+/* Does the model have a number of its own called alpha? Then that key is not the map's. */
+static int own_alpha(const asp_model *model)
+{
+    size_t i;
+    for (i = 0; i < model->param_count; i++)
+        if (!strcmp(model->params[i].name, "alpha"))
+            return 1;
+    return 0;
+}
+
 /* alpha for both axes, or alpha_x and alpha_y. */
-static asp_status read_alphas(aspi_spec *spec, double initial, double *x, double *y,
+static asp_status read_alphas(aspi_spec *spec, const asp_model *model, double *x, double *y,
                               asp_error *err)
 {
-    double both = initial;
+    double both = model->alpha;
     int has_both = 0, has_x = 0, has_y = 0;
-    asp_status s = aspi_spec_number(spec, "alpha", &both, &has_both, err);
+    asp_status s = ASP_OK;
+    if (!own_alpha(model))
+        s = aspi_spec_number(spec, "alpha", &both, &has_both, err);
     *x = *y = both;
     if (!s)
         s = aspi_spec_number(spec, "alpha_x", x, &has_x, err);
@@ -47,11 +59,11 @@ static asp_status blame(const aspi_spec *spec, asp_status s, asp_error *err)
     return s;
 }
 
-static asp_status read_slope_map(aspi_spec *spec, double initial, asp_map *map, asp_error *err)
+static asp_status read_slope_map(aspi_spec *spec, const asp_model *model, asp_map *map, asp_error *err)
 {
     double x, y, rotation = 0.0, rho = 0.0, mean_x = 0.0, mean_y = 0.0;
     int turned = 0, correlated = 0;
-    asp_status s = read_alphas(spec, initial, &x, &y, err);
+    asp_status s = read_alphas(spec, model, &x, &y, err);
     if (!s)
         s = aspi_spec_number(spec, "rotation", &rotation, &turned, err);
     if (!s)
@@ -88,7 +100,7 @@ static asp_status read_entries(aspi_spec *spec, const char *const *keys, int cou
     return ASP_OK;
 }
 
-static asp_status read_ellipsoid(aspi_spec *spec, double initial, asp_map *map, asp_error *err)
+static asp_status read_ellipsoid(aspi_spec *spec, const asp_model *model, asp_map *map, asp_error *err)
 {
     static const char *const a_keys[] = { "a11", "a12", "a13", "a21", "a22",
                                           "a23", "a31", "a32", "a33" };
@@ -108,7 +120,7 @@ static asp_status read_ellipsoid(aspi_spec *spec, double initial, asp_map *map, 
         const double full[9] = { S[0], S[1], S[2], S[1], S[3], S[4], S[2], S[4], S[5] };
         return asp_map_from_gram(full, map, err);
     }
-    s = read_alphas(spec, initial, &x, &y, err);
+    s = read_alphas(spec, model, &x, &y, err);
     if (!s)
         s = aspi_spec_number(spec, "theta_x", &tx, NULL, err);
     if (!s)
@@ -151,8 +163,8 @@ asp_status aspi_ndf_parse(const asp_model *const *models, const char *text, size
         if (s)
             return s;
     }
-    s = model->keys == ASP_KEYS_ELLIPSOID ? read_ellipsoid(&spec, model->alpha, &map, err)
-                                          : read_slope_map(&spec, model->alpha, &map, err);
+    s = model->keys == ASP_KEYS_ELLIPSOID ? read_ellipsoid(&spec, model, &map, err)
+                                          : read_slope_map(&spec, model, &map, err);
     if (!s)
         s = aspi_spec_rest(&spec, model->keys == ASP_KEYS_ELLIPSOID ? ellipsoid_keys : slope_keys,
                            err);

@@ -27,7 +27,7 @@ static asp_status beckmann_prepare(asp_ndf *out, asp_error *err)
 ASP_RECORD asp_model asp_model_beckmann = {
     "beckmann", NULL, "Beckmann (Gaussian slopes)",
     "Beckmann, Spizzichino 1963; Walter et al. 2007",
-    ASP_KEYS_SLOPE, 0.3, NULL, 0, beckmann_prepare, ASP_NDF_OPS(beckmann)
+    ASP_KEYS_SLOPE, 0.3, 0, 0, NULL, 0, beckmann_prepare, ASP_NDF_OPS(beckmann)
 };
 #undef STUDENT_GAUSSIAN
 #undef ASP_NDF

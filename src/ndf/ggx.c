@@ -16,14 +16,14 @@
 ASP_RECORD asp_model asp_model_ggx = {
     "ggx", "trowbridge_reitz", "GGX (Trowbridge-Reitz)",
     "Trowbridge, Reitz 1975; Walter et al. 2007",
-    ASP_KEYS_SLOPE, 0.3, NULL, 0, NULL, ASP_NDF_OPS(ggx)
+    ASP_KEYS_SLOPE, 0.3, 0, 0, NULL, 0, NULL, ASP_NDF_OPS(ggx)
 };
 
 /* The same surface, its slope map given by the ellipsoid's matrix A. */
 ASP_RECORD asp_model asp_model_ellipsoid = {
     "ellipsoid", NULL, "Ellipsoid NDF: GGX through the slope map of A",
     "Walter, Dong, Marschner, Greenberg 2014, eqs. 1-3",
-    ASP_KEYS_ELLIPSOID, 0.3, NULL, 0, NULL, ASP_NDF_OPS(ggx)
+    ASP_KEYS_ELLIPSOID, 0.3, 0, 0, NULL, 0, NULL, ASP_NDF_OPS(ggx)
 };
 #undef ASP_NDF
 

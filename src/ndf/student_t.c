@@ -31,7 +31,7 @@ static const asp_param student_t_params[] = {
 ASP_RECORD asp_model asp_model_student_t = {
     "student_t", "std", "Student's t-distribution of slopes (STD)",
     "Ribardiere, Bringier, Meneveaux, Simonot 2017",
-    ASP_KEYS_SLOPE, 0.3, student_t_params, 1, student_t_prepare, ASP_NDF_OPS(student_t)
+    ASP_KEYS_SLOPE, 0.3, 0, 0, student_t_params, 1, student_t_prepare, ASP_NDF_OPS(student_t)
 };
 #undef STUDENT_GAUSSIAN
 #undef ASP_NDF

@@ -20,7 +20,7 @@ static const asp_param two_scale_params[] = {
 
 ASP_RECORD asp_model asp_model_two_scale = {
     "two_scale", NULL, "Two GGX roughnesses", "a mixture of Walter et al. 2007, eq. 33",
-    ASP_KEYS_SLOPE, 0.2, two_scale_params, 2, NULL, ASP_NDF_OPS(two_scale)
+    ASP_KEYS_SLOPE, 0.2, 0, 0, two_scale_params, 2, NULL, ASP_NDF_OPS(two_scale)
 };
 #undef ASP_NDF
 
