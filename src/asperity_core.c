@@ -38,6 +38,8 @@
 #undef ASP_PRECISION
 #include "ndf/ggx.c"
 #undef ASP_PRECISION
+#include "ndf/student_forms.c"
+#undef ASP_PRECISION
 #include "ndf/student_prepare.c"
 #undef ASP_PRECISION
 #include "ndf/student_t.c"

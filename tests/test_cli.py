@@ -315,6 +315,33 @@ def eval_bad_rows():
     check(float(low[0]["D"]) == 0, "below the horizon is legal and 0")
 
 
+def eval_forms():
+    """Masking by the formulas of the Student-t paper; at gamma = 2 all of them are GGX's."""
+    text = "wx,wy,wz\n0.6,0,0.8\n0,0.8,0.6\n0.6,-0.64,0.48\n0,0,1\n1,0,0\n0.6,0,-0.8\n"
+    ndf = "student_t:alpha_x=0.5,alpha_y=0.2,rotation=0.3,gamma=%g"
+    for gamma, forms in ((2, {"exact": 1e-12, "hypergeometric": 1e-12, "integer": 1e-13,
+                              "rational": 0.008}),
+                         (3.5, {"half_integer": 1e-11, "hypergeometric": 1e-11, "rational": 0.008})):
+        for quantity in ("lambda", "G1"):
+            want = rows(run("eval", quantity, "--ndf", ndf % gamma, stdin=text, status=0).stdout)
+            for form, tolerance in forms.items():
+                got = rows(run("eval", quantity, "--ndf", ndf % gamma, "--form", form, stdin=text,
+                               status=0).stdout)
+                for a, b in zip(got, want):
+                    x, y = float(a[quantity]), float(b[quantity])
+                    if quantity == "lambda":
+                        x, y = 1 / (1 + x), 1 / (1 + y)
+                    check(abs(x - y) <= tolerance, "%s by %s: %g, not %g" % (quantity, form, x, y))
+    for words, says in ((("D", "--ndf", ndf % 2, "--form", "exact"), "lambda and G1"),
+                        (("G1", "--ndf", "ggx", "--form", "exact"), "student_t"),
+                        (("G1", "--ndf", ndf % 2 + ",mean_x=0.1", "--form", "exact"), "mean slope"),
+                        (("G1", "--ndf", ndf % 2.25, "--form", "integer"), "gamma"),
+                        (("G1", "--ndf", ndf % 2, "--form", "half_integer"), "[2.5, 499.5]"),
+                        (("G1", "--ndf", ndf % 2, "--form", "fast"), "hypergeometric"),
+                        (("G1", "--ndf", ndf % 2, "--form", "exact", "--mask", "wall"), "--mask")):
+        run("eval", *words, stdin=text, status=2, says=["--form", says])
+
+
 def eval_memory():
     def peak(count):
         read, write = os.pipe()
@@ -378,4 +405,4 @@ def samples():
 
 
 run_sections([help_texts, usage_errors, list_ranges, eval_values, eval_read_back, eval_bad_rows,
-              eval_memory, sample_lengths, samples])
+              eval_forms, eval_memory, sample_lengths, samples])

@@ -1,4 +1,5 @@
 /* cmd_eval.c - one more column: a quantity at the directions of each row */
+#include "asperity_ndf.h"
 #include "csv.h"
 #include "precision.h"
 
@@ -30,6 +31,7 @@ typedef struct block32 { float in[SLOTS][BLOCK], out[3][BLOCK]; } block32;
 
 typedef struct job {
     int quantity, mask, columns;
+    const char *form;            /* lambda and G1 by a formula of the STD paper, or NULL */
     asp_material  material;      /* its ndf is the distribution */
     asp_materialf materialf;
 } job;
@@ -70,6 +72,20 @@ static const struct quantity { const char *name; int needs; } quantities[QUANTIT
     }
 DEFINE_EVALUATE(64, work->material, asp_cvec3s, asp_rgbs)
 DEFINE_EVALUATE(32, work->materialf, asp_cvec3sf, asp_rgbsf)
+
+/* lambda and G1 of an unskewed student_t by one of its paper's formulas. */
+static void evaluate_form(const job *work, block64 *b, size_t n)
+{
+    const asp_map *map = &work->material.ndf.map;
+    for (size_t i = 0; i < n; i++) {
+        double x = b->in[AT_W][i], y = b->in[AT_W + 1][i], z = b->in[AT_W + 2][i], lambda = HUGE_VAL;
+        double s = hypot(map->m00 * x + map->m10 * y, map->m01 * x + map->m11 * y);
+        if (z > 0)
+            asp_student_lambda(work->form, work->material.ndf.shape[0], s > 0 ? z / s : HUGE_VAL,
+                               &lambda, NULL);
+        b->out[0][i] = work->quantity == Q_LAMBDA ? lambda : 1 / (1 + lambda);
+    }
+}
 
 /* ------------------------------------------------------------------ which columns */
 
@@ -191,7 +207,9 @@ static void narrow(const block64 *from, block32 *to, size_t n)
 static void finish_block(const job *work, const layout *where, char separator, block64 *b,
                          block32 *bf, lines *kept, size_t rows, cmd_out *out)
 {
-    if (bf) {
+    if (work->form) {
+        evaluate_form(work, b, rows);
+    } else if (bf) {
         narrow(b, bf, rows);
         evaluate32(work, bf, rows);
         for (int i = 0; i < work->columns; i++)
@@ -267,6 +285,26 @@ static int write_header(const job *work, const csv *table, const char *name, cmd
 
 /* ------------------------------------------------------------------ the command */
 
+static int check_form(const cmd_args *args, job *work)
+{
+    const asp_ndf *ndf = &work->material.ndf;
+    char line[640];
+    double lambda;
+    asp_error err;
+    work->form = cmd_text(args, "form");
+    if (!work->form)
+        return CMD_OK;
+    if (work->quantity != Q_LAMBDA && work->quantity != Q_G1)
+        return cmd_usage("--form %s: only lambda and G1 have forms", work->form);
+    if (strcmp(ndf->model->name, "student_t") != 0 || ndf->map.tx != 0 || ndf->map.ty != 0)
+        return cmd_usage("--form %s: needs --ndf student_t without a mean slope", work->form);
+    if (cmd_given(args, "mask") || cmd_choice(args, "precision"))
+        return cmd_usage("--form %s: takes neither --mask nor f32", work->form);
+    if (asp_student_lambda(work->form, ndf->shape[0], 1, &lambda, &err))
+        return cmd_usage("--form %s: %s", work->form, asp_error_text(&err, line, sizeof line));
+    return CMD_OK;
+}
+
 static int make_job(const cmd_args *args, job *work)
 {
     const char *names[QUANTITIES + 1] = { NULL };
@@ -281,7 +319,7 @@ static int make_job(const cmd_args *args, job *work)
     work->mask = work->material.mask;
     if (status == CMD_OK)
         work->materialf = asp_material_narrow(&work->material);
-    return status;
+    return status == CMD_OK ? check_form(args, work) : status;
 }
 
 /* The new column's name stands in the header without quotes. */
@@ -339,6 +377,9 @@ static const cmd_option options[] = {
     { "mask", 0, "NAME", CMD_TEXT,
       .help = "masking: correlated, uncorrelated or v_cavity, and min or wall, joined by '+'; "
               "default: the material's, else correlated+min" },
+    { "form", 0, "NAME", CMD_TEXT,
+      .help = "lambda and G1 of student_t by a formula of its paper: exact, hypergeometric, integer, "
+              "half_integer or rational" },
     { "precision", 0, "f64|f32", CMD_CHOICE, .initial = "f64",
       .help = "f32 narrows each number and evaluates in single precision" },
     { "as", 0, "NAME", CMD_TEXT, .help = "name of the new column; default: the quantity" },
