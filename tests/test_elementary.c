@@ -134,6 +134,35 @@ static void check_sum(void)
     report("log1p_sum 32", 1e-6, 1e15, worst, at, 1.0);
 }
 
+/* The angle of (x, y) in the first quadrant, in ulps: lengths far apart, and all angles evenly. */
+static void check_angle(void)
+{
+    double worst64 = 0, worst32 = 0, at64 = 0, at32 = 0;
+    int i;
+    for (i = 0; i < N; i++) {
+        double t = 1.5707 * uniform(), size = argument(1e-12, 1e12, 1);
+        double x = i & 1 ? argument(1e-17, 1e17, 1) : size * cos(t);
+        double y = i & 1 ? argument(1e-17, 1e17, 1) : size * sin(t);
+        float xf = (float)x, yf = (float)y;
+        long double want = atan2l((long double)y, (long double)x);
+        double narrow = atan2((double)yf, (double)xf);
+        double e = (double)(fabsl((long double)aspi_angle_64(y, x) - want)
+                            / ldexpl(1, ilogbl(want) - (DBL_MANT_DIG - 1)));
+        double f = fabs((double)aspi_angle_32(yf, xf) - narrow)
+                 / ldexp(1, ilogb(narrow) - (FLT_MANT_DIG - 1));
+        if (!(e <= worst64)) {
+            worst64 = e;
+            at64 = y / x;
+        }
+        if (!(f <= worst32)) {
+            worst32 = f;
+            at32 = y / x;
+        }
+    }
+    report("angle 64", 0, INFINITY, worst64, at64, 2.6);
+    report("angle 32", 0, INFINITY, worst32, at32, 2.9);
+}
+
 static void check_edges(void)
 {
     const double nan = (double)NAN;
@@ -144,6 +173,10 @@ static void check_edges(void)
         { "expm1 of very negative is -1", aspi_expm1_64(-1e300) == -1 && aspi_expm1_32(-1e38f) == -1 },
         { "log(1) = 0, log1p(0) = 0", aspi_log_64(1) == 0 && aspi_log_32(1) == 0
           && aspi_log1p_64(0) == 0 && aspi_log1p_32(0) == 0 },
+        { "angles of the axes", aspi_angle_64(0, 1) == 0 && aspi_angle_64(0, 0) == 0
+          && aspi_angle_64(1, 0) == 0.5 * ASP_PI && aspi_angle_32(0, 1) == 0
+          && aspi_angle_32(1, 0) == (float)(0.5 * ASP_PI) && isnan(aspi_angle_64(nan, 1))
+          && isnan(aspi_angle_64(1, nan)) && isnan(aspi_angle_32((float)nan, 1)) },
         { "NaN in, NaN out", isnan(aspi_exp_64(nan)) && isnan(aspi_exp_32((float)nan))
           && isnan(aspi_expm1_64(nan)) && isnan(aspi_expm1_32((float)nan))
           && isnan(aspi_log_64(nan)) && isnan(aspi_log_32((float)nan))
@@ -177,6 +210,7 @@ int main(void)
     check32("log1p 32", log1p_32, log1p, 1e-10, 0.9999, 1, -1, 1.6);
     check_turn();
     check_sum();
+    check_angle();
     check_edges();
     printf("%d passed, %d failed\n", passed, failed);
     return failed != 0;

@@ -6,7 +6,7 @@
  * alone has a fitted polynomial. Measured bounds in units in the last place, float64 and float32
  * (tests/test_elementary.c, 10^6 random arguments per row):
  *     exp 1.0, 1.1    expm1 2.0, 2.0    log 1.0, 1.0    log1p 1.5, 1.6
- *     sincos2pi absolute 1.8e-16, 1e-7 */
+ *     sincos2pi absolute 1.8e-16, 1e-7    angle 2.6, 2.9 */
 
 #include "asperity/number.h"
 
@@ -37,6 +37,7 @@
 #define aspi_log1p_sum ASP_NAME(aspi_log1p_sum)
 #define aspi_sin_cos ASP_NAME(aspi_sin_cos)
 #define aspi_sincos2pi ASP_NAME(aspi_sincos2pi)
+#define aspi_angle ASP_NAME(aspi_angle)
 #define aspi_atan ASP_NAME(aspi_atan)
 #endif
 
@@ -343,23 +344,40 @@ ASP_FN asp_v2 aspi_sincos2pi(asp_real u)
     return out;
 }
 
-/* Angle of the vector (x, y) in (-pi, pi]; 0 for the zero vector. Two halvings of the angle bring
- * the tangent below tan(pi/16), the series does the rest. Not for hot loops. */
+/* Angle of the vector (x, y) to the x axis, x >= 0, y >= 0; 0 for the zero vector. The nearest of 0,
+ * pi/8 and pi/4 is taken off by the tangent of a difference, which leaves at most tan(pi/16). */
+ASP_FN asp_real aspi_angle(asp_real y, asp_real x)
+{
+    int steep = y > x;
+    asp_real high = steep ? y : x, low = steep ? x : y;
+    int middle = low > R(0.19891236737965800691) * high;   /* tan(pi/16) */
+    int far = low > R(0.66817863791929891999) * high;      /* tan(3 pi/16) */
+    asp_real tangent = far ? R(1.0) : middle ? R(0.41421356237309504880) : R(0.0);
+    asp_real off = far ? R(0.25 * ASP_PI) : middle ? R(0.125 * ASP_PI) : R(0.0);
+    asp_real t = (low - high * tangent) / aspi_max(high + low * tangent, R(1e-37));
+    asp_real z = t * t, p;
+#if ASP_PRECISION == 64
+    p = R(1.0 / 21.0);
+    p = p * z - R(1.0 / 19.0);
+    p = p * z + R(1.0 / 17.0);
+    p = p * z - R(1.0 / 15.0);
+    p = p * z + R(1.0 / 13.0);
+    p = p * z - R(1.0 / 11.0);
+    p = p * z + R(1.0 / 9.0);
+#else
+    p = R(1.0 / 9.0);
+#endif
+    p = p * z - R(1.0 / 7.0);
+    p = p * z + R(1.0 / 5.0);
+    p = p * z - R(1.0 / 3.0);
+    t = off + (t + (t * z) * p);
+    return steep ? R(0.5 * ASP_PI) - t : t;
+}
+
+/* Angle of the vector (x, y) in (-pi, pi]; 0 for the zero vector. */
 ASP_FN asp_real aspi_atan(asp_real y, asp_real x)
 {
-    asp_real ax = aspi_abs(x), ay = aspi_abs(y);
-    asp_real high = ax > ay ? ax : ay, low = ax > ay ? ay : ax;
-    asp_real t = high > R(0.0) ? low / high : R(0.0);
-    asp_real z, p, a;
-    int i;
-    t = t / (R(1.0) + aspi_sqrt(R(1.0) + t * t));
-    t = t / (R(1.0) + aspi_sqrt(R(1.0) + t * t));
-    z = t * t;
-    p = R(0.0);
-    for (i = 12; i > 0; i--)
-        p = z * ((i & 1 ? R(-1.0) : R(1.0)) / R(2 * i + 1) + p);
-    a = R(4.0) * (t + t * p);
-    a = ay > ax ? R(0.5 * ASP_PI) - a : a;
+    asp_real a = aspi_angle(aspi_abs(y), aspi_abs(x));
     a = x < R(0.0) ? R(ASP_PI) - a : a;
     return y < R(0.0) ? -a : a;
 }
