@@ -140,6 +140,7 @@ typedef struct asp_ndf {
     double  inv_det;                      /* 1 / |det M| */
     double  shape[ASP_SHAPE_NUMBERS];     /* the model's own numbers */
     double  table[ASP_TABLE_NUMBERS];     /* what the model prepared */
+    const void *data;                     /* numbers too many for the table, or NULL; see below */
 } asp_ndf;
 
 /* The models of this library in the order of `asperity list`; ends with NULL. */
@@ -152,6 +153,13 @@ const asp_model *asp_find_model(const asp_model *const *models, const char *name
  * parameter table (NULL: the defaults). May spend up to 2 ms; evaluation never prepares anything. */
 asp_status asp_ndf_make(const asp_model *model, const asp_map *map, const double *shape,
                         asp_ndf *out, asp_error *err);
+
+/* The same with `data`, for models that need more numbers than a value holds; their documentation says
+ * what it points to. The memory stays the caller's: it must not change and must outlive the value, all
+ * its copies and its narrowed form, which keep the pointer. asp_ndf_make gives NULL; a model that needs
+ * data refuses that. */
+asp_status asp_ndf_make_data(const asp_model *model, const asp_map *map, const double *shape,
+                             const void *data, asp_ndf *out, asp_error *err);
 
 /* Makes a distribution from a spec, `name:key=value,key=value`. Every model takes the map's keys
  * alpha (or alpha_x, alpha_y), rotation or rho, mean_x, mean_y, and its own. Examples:
@@ -335,6 +343,7 @@ typedef struct asp_ndff {
     float inv_det;
     float shape[ASP_SHAPE_NUMBERS];
     float table[ASP_TABLE_NUMBERS];
+    const void *data;
 } asp_ndff;
 
 typedef struct asp_materialf {

@@ -36,7 +36,15 @@
  *   asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
  *       a normal of any length with density D(m) m.z.
  *
- * k->shape[] and k->table[] hold what `prepare` wrote. Formulas are straight-line: no libm calls
+ * A standard surface that is not radially symmetric defines ASP_NDF_PLANAR before its first reading;
+ * then two of the formulas take the vector itself, in the standard frame:
+ *
+ *   asp_real ndf_density(const asp_shape *k, asp_v3 m)      P22(-m.x/m.z, -m.y/m.z) / m.z^4, m.z > 0
+ *   asp_real ndf_sigma(const asp_shape *k, asp_v3 v)        any v; sigma(v) - sigma(-v) = v.(-t', 1),
+ *                                                           t' the mean of the standard slopes
+ *
+ * k->shape[] and k->table[] hold what `prepare` wrote, k->data what the caller handed to
+ * asp_ndf_make_data. Formulas are straight-line: no libm calls
  * (use asperity/elementary.h), no early returns, selections by ?:, loops of constant length only;
  * then the compiler vectorises the loops that ndf_loops.h wraps around them. */
 #ifndef ASPERITY_NDF_H
@@ -67,36 +75,47 @@ typedef struct asp_reflectionf {
     float wo_x, wo_y, wo_z, m_z, cosine, density, sigma_i, sigma_o;
 } asp_reflectionf;
 
-/* The formulas in one precision: single, and over a block of n elements that do not overlap.
- * ndf_loops.h makes them. Vectors go number by number: small structs of floats pass through memory
- * in the usual calling convention and stall there. */
+/* The distribution in one precision, as the world sees it, through its slope map; ndf_loops.h makes
+ * all of it from the four formulas.
+ *     density    D(m): finite, 0 where m.z <= 0; m need not be unit, D is homogeneous of degree -4
+ *     sigma      of any vector w, homogeneous of degree 1; the loop takes sign * w, sign = 1 or -1
+ *     visible    a unit normal seen from w
+ *     normal     a unit normal with density D(m) m.z
+ *     reflect    visible, mirror wi in it, and what is known of both directions
+ * Loops take a block of n elements, n <= ASP_BLOCK (number.h: 256 in float32, 128 in float64), and
+ * their outputs do not overlap anything else. Vectors go number by number: small structs of floats pass
+ * through memory in the usual calling convention and stall there. */
 typedef struct asp_ndf_ops {
-    double (*density)(const asp_ndf *k, double r2, double z2);
-    double (*sigma)(const asp_ndf *k, double w, double s2);
-    void (*visible)(const asp_ndf *k, double vx, double vy, double vz, double u1, double u2, double m[3]);
+    double (*density)(const asp_ndf *k, double mx, double my, double mz);
+    double (*sigma)(const asp_ndf *k, double wx, double wy, double wz);
+    void (*visible)(const asp_ndf *k, double wx, double wy, double wz, double u1, double u2, double m[3]);
     void (*normal)(const asp_ndf *k, double u1, double u2, double m[3]);
     void (*reflect)(const asp_ndf *k, double wi_x, double wi_y, double wi_z, double u1, double u2,
                     asp_reflection *out);
-    void (*density_n)(const asp_ndf *k, size_t n, const double *r2, const double *z2, double *out);
-    void (*sigma_n)(const asp_ndf *k, size_t n, const double *w, const double *s2, double *out);
-    void (*visible_n)(const asp_ndf *k, size_t n, const double *vx, const double *vy,
-                      const double *vz, const double *u1, const double *u2, double *mx, double *my,
+    void (*density_n)(const asp_ndf *k, size_t n, const double *mx, const double *my,
+                      const double *mz, double *out);
+    void (*sigma_n)(const asp_ndf *k, size_t n, double sign, const double *wx, const double *wy,
+                    const double *wz, double *out);
+    void (*visible_n)(const asp_ndf *k, size_t n, const double *wx, const double *wy,
+                      const double *wz, const double *u1, const double *u2, double *mx, double *my,
                       double *mz);
     void (*normal_n)(const asp_ndf *k, size_t n, const double *u1, const double *u2,
                      double *mx, double *my, double *mz);
 } asp_ndf_ops;
 
 typedef struct asp_ndf_opsf {
-    float (*density)(const asp_ndff *k, float r2, float z2);
-    float (*sigma)(const asp_ndff *k, float w, float s2);
-    void (*visible)(const asp_ndff *k, float vx, float vy, float vz, float u1, float u2, float m[3]);
+    float (*density)(const asp_ndff *k, float mx, float my, float mz);
+    float (*sigma)(const asp_ndff *k, float wx, float wy, float wz);
+    void (*visible)(const asp_ndff *k, float wx, float wy, float wz, float u1, float u2, float m[3]);
     void (*normal)(const asp_ndff *k, float u1, float u2, float m[3]);
     void (*reflect)(const asp_ndff *k, float wi_x, float wi_y, float wi_z, float u1, float u2,
                     asp_reflectionf *out);
-    void (*density_n)(const asp_ndff *k, size_t n, const float *r2, const float *z2, float *out);
-    void (*sigma_n)(const asp_ndff *k, size_t n, const float *w, const float *s2, float *out);
-    void (*visible_n)(const asp_ndff *k, size_t n, const float *vx, const float *vy,
-                      const float *vz, const float *u1, const float *u2, float *mx, float *my,
+    void (*density_n)(const asp_ndff *k, size_t n, const float *mx, const float *my,
+                      const float *mz, float *out);
+    void (*sigma_n)(const asp_ndff *k, size_t n, float sign, const float *wx, const float *wy,
+                    const float *wz, float *out);
+    void (*visible_n)(const asp_ndff *k, size_t n, const float *wx, const float *wy,
+                      const float *wz, const float *u1, const float *u2, float *mx, float *my,
                       float *mz);
     void (*normal_n)(const asp_ndff *k, size_t n, const float *u1, const float *u2,
                      float *mx, float *my, float *mz);
@@ -138,7 +157,7 @@ void asp_ndf_stretch(asp_ndf *out, double by);
 #define ASP_RECORD const
 #endif
 
-#define ASP_NDF_OPS_(n, s) { n##density##s, n##sigma##s, n##visible_1##s, n##normal_1##s, n##reflect_1##s, \
+#define ASP_NDF_OPS_(n, s) { n##density_1##s, n##sigma_1##s, n##visible_1##s, n##normal_1##s, n##reflect_1##s, \
     n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s }
 #define ASP_NDF_OPS(n) ASP_NDF_OPS_(n##_, _64), ASP_NDF_OPS_(n##_, _32)
 

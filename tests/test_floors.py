@@ -37,7 +37,6 @@ FORBIDDEN = ('malloc calloc realloc free printf fprintf sprintf snprintf puts fo
              'rand srand time clock').split()
 
 passed = failed = 0
-blocks_seen = set()     # loops of shared headers that some unit vectorised
 
 
 def expect(ok, what):
@@ -168,8 +167,7 @@ def check_vectorised():
     if not gcc:
         print('  gcc is absent: left out')
         return
-    hot = [Path('include/asperity/ndf_loops.h'), Path('src/core/blocks.h'),
-           Path('src/bsdf/bsdf_loops.h'), Path('src/core/facets.c'), Path('src/core/material.c'),
+    hot = [Path('include/asperity/ndf_loops.h'), Path('src/bsdf/bsdf_loops.h'), Path('src/core/facets.c'), Path('src/core/material.c'),
            Path('src/core/material_batch.c')]
     hot += sorted(Path('src/core').glob('*_loops.h'))
     hot += sorted(Path('src/ndf').glob('*.h'))
@@ -209,19 +207,12 @@ def check_vectorised():
         own = any('define ASP_OWN_VISIBLE_N' in Path(p).read_text() for p in included)
         for path in included & set(loops):
             for line in loops[path]:
-                if path == 'src/core/blocks.h' and (path, line) not in seen:
-                    continue              # not every unit calls every loop; checked below
                 if own and (path, line) in replaced:
                     continue              # it brings its own, which are in its files
                 total += 1
                 count = seen.get((path, line), 0)
                 expect(count >= 2, f'{unit}: the loop at {path}:{line} is vectorised '
                                    f'{count} times, in both precisions it would be 2 or more')
-        for key in seen:
-            blocks_seen.add(key)
-    for line in loops.get('src/core/blocks.h', []):
-        expect(('src/core/blocks.h', line) in blocks_seen,
-               f'src/core/blocks.h:{line}: vectorised nowhere')
     print(f'  {total} loops in {len(units)} files')
     expect(total >= 20, f'only {total} hot loops found')
 

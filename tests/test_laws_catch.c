@@ -4,6 +4,8 @@
  * pass everything would fail here. */
 #include "asperity_data.h"
 #include "asperity_ndf.h"
+#define ASP_PRECISION 64
+#include "asperity/facet.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,39 +15,43 @@ static asp_model ggx;   /* the sound record */
 
 /* ------------------------------------------------------------------ ways to be wrong */
 
-static double density_more(const asp_ndf *k, double r2, double z2)
+static double density_more(const asp_ndf *k, double mx, double my, double mz)
 {
-    return 1.00000001 * ggx.f64.density(k, r2, z2);
+    return 1.00000001 * ggx.f64.density(k, mx, my, mz);
 }
 
 /* A wrong power in the tail only: what a general test at moderate angles would pass. */
-static double density_tail(const asp_ndf *k, double r2, double z2)
+static double density_tail(const asp_ndf *k, double mx, double my, double mz)
 {
-    double d = ggx.f64.density(k, r2, z2);
+    double d = ggx.f64.density(k, mx, my, mz);
+    asp_vec3 v = aspi_facet_64(k, aspi_vector_64(mx, my, mz));
+    double r2 = v.x * v.x + v.y * v.y, z2 = v.z * v.z;
     return r2 > 400 * z2 ? d * sqrt(400 * z2 / r2) : d;
 }
 
 /* Singular at the mean slope, as a patched epsilon would make it. */
-static double density_nan_lost(const asp_ndf *k, double r2, double z2)
+static double density_nan_lost(const asp_ndf *k, double mx, double my, double mz)
 {
-    return r2 == r2 && z2 == z2 ? ggx.f64.density(k, r2, z2) : 0;
+    double d = ggx.f64.density(k, mx, my, mz);
+    return d == d ? d : 0;
 }
 
-static double sigma_more(const asp_ndf *k, double w, double s2)
+static double sigma_more(const asp_ndf *k, double wx, double wy, double wz)
 {
-    return ggx.f64.sigma(k, w, s2) * (w > 0 ? 1 + 1e-9 * s2 : 1);
+    asp_vec3 v = aspi_view_64(k, aspi_vector_64(wx, wy, wz));
+    return ggx.f64.sigma(k, wx, wy, wz) * (v.z > 0 ? 1 + 1e-9 * (v.x * v.x + v.y * v.y) : 1);
 }
 
 /* Right above the mean plane, cancelling below it. */
-static double sigma_cancels(const asp_ndf *k, double w, double s2)
+static double sigma_cancels(const asp_ndf *k, double wx, double wy, double wz)
 {
-    (void)k;
-    return 0.5 * (sqrt(w * w + s2) + w);
+    asp_vec3 v = aspi_view_64(k, aspi_vector_64(wx, wy, wz));
+    return 0.5 * (sqrt(v.z * v.z + (v.x * v.x + v.y * v.y)) + v.z);
 }
 
-static double sigma_negative(const asp_ndf *k, double w, double s2)
+static double sigma_negative(const asp_ndf *k, double wx, double wy, double wz)
 {
-    return ggx.f64.sigma(k, w, s2) - (w < 0 ? 1e-9 : 0);
+    return ggx.f64.sigma(k, wx, wy, wz) - (aspi_view_64(k, aspi_vector_64(wx, wy, wz)).z < 0 ? 1e-9 : 0);
 }
 
 static void visible_as_normal(const asp_ndf *k, double vx, double vy, double vz, double u1,
@@ -82,21 +88,21 @@ static void normal_end(const asp_ndf *k, double u1, double u2, double m[3])
     m[0] /= u1 > 0.9999999 ? 0 : 1;
 }
 
-static void density_n_other(const asp_ndf *k, size_t n, const double *r2, const double *z2,
-                            double *out)
+static void density_n_other(const asp_ndf *k, size_t n, const double *mx, const double *my,
+                            const double *mz, double *out)
 {
-    ggx.f64.density_n(k, n, r2, z2, out);
+    ggx.f64.density_n(k, n, mx, my, mz, out);
     out[n - 1] *= 1 + 2e-16;
 }
 
-static float sigma_coarse(const asp_ndff *k, float w, float s2)
+static float sigma_coarse(const asp_ndff *k, float wx, float wy, float wz)
 {
-    return ggx.f32.sigma(k, w, s2) * 1.000003f;
+    return ggx.f32.sigma(k, wx, wy, wz) * 1.000003f;
 }
 
-static float density_coarse(const asp_ndff *k, float r2, float z2)
+static float density_coarse(const asp_ndff *k, float mx, float my, float mz)
 {
-    return ggx.f32.density(k, r2 * 1.000003f, z2);
+    return ggx.f32.density(k, mx * 1.0000015f, my * 1.0000015f, mz);
 }
 
 /* ------------------------------------------------------------------ the table */
@@ -159,16 +165,16 @@ static void spoil_normal_half(asp_model *m)
 
 /* eval and pdf take the density, the sampler knows nothing of it: sample and pdf disagree, and so
  * do weights and eval. */
-static void density_sharper_n(const asp_ndf *k, size_t n, const double *r2, const double *z2,
-                              double *out)
+static double density_sharper(const asp_ndf *k, double mx, double my, double mz)
+{
+    return 1.44 * ggx.f64.density(k, 1.2 * mx, 1.2 * my, mz);
+}
+static void density_sharper_n(const asp_ndf *k, size_t n, const double *mx, const double *my,
+                              const double *mz, double *out)
 {
     size_t i;
     for (i = 0; i < n; i++)
-        out[i] = 1.44 * ggx.f64.density(k, 1.44 * r2[i], z2[i]);
-}
-static double density_sharper(const asp_ndf *k, double r2, double z2)
-{
-    return 1.44 * ggx.f64.density(k, 1.44 * r2, z2);
+        out[i] = density_sharper(k, mx[i], my[i], mz[i]);
 }
 static void spoil_density_sharper(asp_model *m)
 {

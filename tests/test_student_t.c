@@ -6,15 +6,13 @@
  * law by chi-square, also against a rejection sampler of another construction, and no NaN or infinity
  * for any finite input. ASPERITY_SAMPLES sets the samples per chi-square case. */
 #include "student_reference.h"
-#include "asperity_ndf.h"
+#include "student_formulas.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-extern const asp_model asp_model_student_t, asp_model_beckmann, asp_model_ggx;
 
 static const double gammas[] = { 1.501, 1.51, 1.65, 2, 2.5, 4, 10, 50, 1e4, INFINITY };
 #define GAMMAS (sizeof gammas / sizeof gammas[0])
@@ -40,23 +38,27 @@ static void report(const char *what, double gamma, double worst, double bound)
 
 /* One prepared distribution in both precisions. */
 typedef struct pair {
-    const asp_model *model;
+    const formulas *model;
+    const asp_model *ops;
     double gamma, n;
     asp_ndf k;
     asp_ndff f;
 } pair;
 
-static pair make(const asp_model *model, double gamma)
+static pair make(const formulas *model, double gamma)
 {
     pair p;
     int i;
     memset(&p, 0, sizeof p);
     p.model = model;
+    p.ops = model->ops;
     p.gamma = gamma;
     p.n = gamma - 1;
     p.k.shape[0] = gamma;
-    if (model->prepare)
-        model->prepare(&p.k, NULL);
+    if (p.ops->prepare)
+        p.ops->prepare(&p.k, NULL);
+    p.k.map.m00 = p.k.map.m11 = p.k.i00 = p.k.i11 = p.k.inv_det = 1;
+    p.f.map.m00 = p.f.map.m11 = p.f.i00 = p.f.i11 = p.f.inv_det = 1;
     for (i = 0; i < ASP_SHAPE_NUMBERS; i++)
         p.f.shape[i] = (float)p.k.shape[i];
     for (i = 0; i < ASP_TABLE_NUMBERS; i++)
@@ -76,15 +78,14 @@ static double larger(double a, double b) { return b <= a ? a : b; }   /* keeps a
 /* float32 against float64 at the same float inputs. */
 static void check_float(const pair *p)
 {
-    const asp_ndf_ops *a = &p->model->f64;
-    const asp_ndf_opsf *b = &p->model->f32;
+    const formulas *a = p->model;
     double d_main = 0, d_tail = 0, up = 0, down = 0, deep = 0;
     int i;
     for (i = 0; i < 200000; i++) {
         float z2 = (float)exp(-9 + 9 * uniform()), w, s2;
         float r2 = (float)(i & 1 ? z2 * exp(-10 + 35 * uniform()) : z2 * 30 * uniform());
         double want = a->density(&p->k, (double)r2, (double)z2), peak = 1 / (pi * (double)z2 * (double)z2);
-        double e = relative((double)b->density(&p->f, r2, z2), want), s;
+        double e = relative((double)a->density_f(&p->f, r2, z2), want), s;
         if (want > 1e-6 * peak)
             d_main = larger(d_main, e);
         else if (want > 1e-30 && want > 1e-36 * peak)
@@ -94,9 +95,9 @@ static void check_float(const pair *p)
         s2 = (float)(s * s);
         s = sqrt((double)s2);
         want = a->sigma(&p->k, (double)w, (double)s2);
-        up = larger(up, relative((double)b->sigma(&p->f, w, s2), want));
+        up = larger(up, relative((double)a->sigma_f(&p->f, w, s2), want));
         want = a->sigma(&p->k, -(double)w, (double)s2);
-        e = relative((double)b->sigma(&p->f, -w, s2), want);
+        e = relative((double)a->sigma_f(&p->f, -w, s2), want);
         if (want > 1e-6 * s)
             down = larger(down, e);
         else if (want > 1e-30 * s && want > 1e-30)
@@ -118,13 +119,13 @@ static void check_sigma(const pair *p)
     for (i = 0; i < 4000; i++) {
         double x = exp(-10 + 10.4 * uniform()), s = exp(-4 + 8 * uniform()), w = x * s;
         double j = moment(p->n, x) - x * tail(p->n, x);
-        worst = larger(worst, relative(p->model->f64.sigma(&p->k, -w, s * s), s * j));
-        sides = larger(sides, fabs(p->model->f64.sigma(&p->k, w, s * s)
-                                   - p->model->f64.sigma(&p->k, -w, s * s) - w)
-                              / p->model->f64.sigma(&p->k, w, s * s));
-        zero = larger(zero, fabs(p->model->f64.sigma(&p->k, w, 0) - w)
-                            + p->model->f64.sigma(&p->k, -w, 0));
-        zero = larger(zero, relative(p->model->f64.sigma(&p->k, 0, s * s), s * moment(p->n, 0)));
+        worst = larger(worst, relative(p->model->sigma(&p->k, -w, s * s), s * j));
+        sides = larger(sides, fabs(p->model->sigma(&p->k, w, s * s)
+                                   - p->model->sigma(&p->k, -w, s * s) - w)
+                              / p->model->sigma(&p->k, w, s * s));
+        zero = larger(zero, fabs(p->model->sigma(&p->k, w, 0) - w)
+                            + p->model->sigma(&p->k, -w, 0));
+        zero = larger(zero, relative(p->model->sigma(&p->k, 0, s * s), s * moment(p->n, 0)));
     }
     report("sigma = s (M - x T), x < 1.5", p->gamma, worst, p->gamma > 100 ? 1e-9 : 1e-11);
     report("sigma(w) - sigma(-w) = w", p->gamma, sides, 1e-15);
@@ -133,25 +134,25 @@ static void check_sigma(const pair *p)
 
 static void check_limits(void)
 {
-    pair two = make(&asp_model_student_t, 2), ggx = make(&asp_model_ggx, 2);
-    pair inf = make(&asp_model_student_t, INFINITY), b = make(&asp_model_beckmann, INFINITY);
-    pair far = make(&asp_model_student_t, 1e9), near = make(&asp_model_student_t, 1e12);
+    pair two = make(&of_student_t, 2), ggx = make(&of_ggx, 2);
+    pair inf = make(&of_student_t, INFINITY), b = make(&of_beckmann, INFINITY);
+    pair far = make(&of_student_t, 1e9), near = make(&of_student_t, 1e12);
     double d = 0, s = 0, di = 0, si = 0, ratio = 0;
     int i;
     for (i = 0; i < 20000; i++) {
         double r2 = exp(-20 + 40 * uniform()), w = exp(-10 + 26 * uniform()), s2 = exp(-4 + 8 * uniform());
         double x = 4 * uniform(), exact;
         w = i & 1 ? w : -w;
-        d = larger(d, relative(two.model->f64.density(&two.k, r2, 0.7),
-                               ggx.model->f64.density(&ggx.k, r2, 0.7)));
-        s = larger(s, relative(two.model->f64.sigma(&two.k, w, s2), ggx.model->f64.sigma(&ggx.k, w, s2)));
-        exact = b.model->f64.density(&b.k, x * x, 1);
-        di = larger(di, relative(inf.model->f64.density(&inf.k, x * x, 1), exact));
+        d = larger(d, relative(two.model->density(&two.k, r2, 0.7),
+                               ggx.model->density(&ggx.k, r2, 0.7)));
+        s = larger(s, relative(two.model->sigma(&two.k, w, s2), ggx.model->sigma(&ggx.k, w, s2)));
+        exact = b.model->density(&b.k, x * x, 1);
+        di = larger(di, relative(inf.model->density(&inf.k, x * x, 1), exact));
         /* the distance to the limit falls as 1/gamma */
-        ratio = larger(ratio, 1e9 * relative(far.model->f64.density(&far.k, x * x, 1), exact) / 150);
-        ratio = larger(ratio, 1e12 * (relative(near.model->f64.density(&near.k, x * x, 1), exact)
+        ratio = larger(ratio, 1e9 * relative(far.model->density(&far.k, x * x, 1), exact) / 150);
+        ratio = larger(ratio, 1e12 * (relative(near.model->density(&near.k, x * x, 1), exact)
                                       - 1e-14) / 150);
-        si = larger(si, relative(inf.model->f64.sigma(&inf.k, x - 2, 1), b.model->f64.sigma(&b.k, x - 2, 1)));
+        si = larger(si, relative(inf.model->sigma(&inf.k, x - 2, 1), b.model->sigma(&b.k, x - 2, 1)));
     }
     report("density: gamma 2 is GGX", 2, d, 1e-13);
     report("sigma: gamma 2 is GGX", 2, s, 1e-12);
@@ -188,7 +189,7 @@ static void check_visible(const pair *p)
         double l = hypot(views[v][0], views[v][1]);
         double c = (double)(float)(views[v][0] / l), s = (double)(float)(views[v][1] / l);
         /* below the mean plane T and M cancel in the reference; where nothing is left, skip */
-        double cancel = c < 0 ? moment(p->n, c / s) / p->model->f64.sigma(&p->k, c, s * s) : 1;
+        double cancel = c < 0 ? moment(p->n, c / s) / p->model->sigma(&p->k, c, s * s) : 1;
         if (cancel > 1e4)
             continue;
         for (i = 0; i < 400; i++) {
@@ -202,8 +203,8 @@ static void check_visible(const pair *p)
                 u2 = exp(-15 * u2);
             u1 = (double)(float)u1 < 1 ? (double)(float)u1 : 0.5;
             u2 = (double)(float)u2;
-            p->model->f64.visible(&p->k, s, 0, c, u1, u2, m);
-            p->model->f32.visible(&p->f, (float)s, 0, (float)c, (float)u1, (float)u2, f);
+            p->ops->f64.visible(&p->k, s, 0, c, u1, u2, m);
+            p->ops->f32.visible(&p->f, (float)s, 0, (float)c, (float)u1, (float)u2, f);
             /* the slope along is -m.x/m.z */
             x = -m[0] / m[2];
             if (m[2] > 1e-140)      /* heavy tails: a vertical facet has lost its slope */
@@ -240,12 +241,12 @@ static void check_normal(const pair *p)
         float f[3];
         if (!(u1 < 1))
             u1 = 0.5;
-        p->model->f64.normal(&p->k, u1, u2, m);
+        p->ops->f64.normal(&p->k, u1, u2, m);
         q = (m[0] * m[0] + m[1] * m[1]) / (m[2] * m[2]);
         q = p->n < 1e12 ? p->n * log1p(q / p->n) : q;
         worst = larger(worst, fabs(-expm1(-q) - u1));
         turn = larger(turn, fabs(remainder(atan2(m[1], m[0]) / (2 * pi) - u2, 1)));
-        p->model->f32.normal(&p->f, (float)u1, (float)u2, f);
+        p->ops->f32.normal(&p->f, (float)u1, (float)u2, f);
         q = ((double)f[0] * (double)f[0] + (double)f[1] * (double)f[1]) / ((double)f[2] * (double)f[2]);
         q = p->n < 1e12 ? p->n * log1p(q / p->n) : q;
         worst_f = larger(worst_f, fabs(-expm1(-q) - u1));
@@ -284,7 +285,7 @@ static double sector(double c, double h, double phi0, double phi1)
  * (e^(a/n) - 1) that is (c - s r cos phi)+ e^-a da dphi/(2 pi sigma). Composite Simpson in a. */
 static void expected(const pair *p, double c, double s, double share[RINGS * SECTORS])
 {
-    double sigma = p->model->f64.sigma(&p->k, c, s * s), sum = 0;
+    double sigma = p->model->sigma(&p->k, c, s * s), sum = 0;
     double beta = p->n < 1e12 ? 1 - 0.5 / p->n : 1;
     int i, j, k;
     for (i = 0; i < RINGS; i++) {
@@ -360,10 +361,10 @@ static void draw(const pair *p, double c, double s, int single, long total, doub
             }
         }
         if (single)
-            p->model->f32.visible_n(&p->f, BLOCK, in32[0], in32[1], in32[2], in32[3], in32[4],
+            p->ops->f32.visible_n(&p->f, BLOCK, in32[0], in32[1], in32[2], in32[3], in32[4],
                                     out32[0], out32[1], out32[2]);
         else
-            p->model->f64.visible_n(&p->k, BLOCK, in64[0], in64[1], in64[2], in64[3], in64[4],
+            p->ops->f64.visible_n(&p->k, BLOCK, in64[0], in64[1], in64[2], in64[3], in64[4],
                                     out64[0], out64[1], out64[2]);
         for (i = 0; i < BLOCK; i++) {
             double x = single ? (double)out32[0][i] : out64[0][i];
@@ -391,7 +392,7 @@ static void check_law(void)
     size_t g, v;
     int single, cases = 0;
     for (g = 0; g < GAMMAS; g++) {
-        pair p = make(g < GAMMAS - 1 ? &asp_model_student_t : &asp_model_beckmann, gammas[g]);
+        pair p = make(g < GAMMAS - 1 ? &of_student_t : &of_beckmann, gammas[g]);
         for (v = 0; v < sizeof view / sizeof view[0]; v++) {
             double l = hypot(view[v][0], view[v][1]), c = view[v][0] / l, s = view[v][1] / l;
             expected(&p, c, s, share);
@@ -447,7 +448,7 @@ static void check_rejection(void)
     size_t g, v;
     for (g = 0; g + 2 < GAMMAS; g++)
         for (v = 0; v < sizeof view / sizeof view[0]; v++) {
-            pair p = make(&asp_model_student_t, gammas[g]);
+            pair p = make(&of_student_t, gammas[g]);
             double c = view[v][0], s = view[v][1], chi2 = 0, prob;
             long i, total = samples();
             int dof = -1;
@@ -489,25 +490,25 @@ static void check_finite(const pair *p)
         double az = 2 * pi * uniform(), l;
         float f[3];
         c = i & 1 ? c : -c;
-        bad += !isfinite(p->model->f64.density(&p->k, r2, z2));
-        bad += !isfinite(p->model->f32.density(&p->f, (float)r2, (float)z2));
-        bad += !isfinite(p->model->f64.sigma(&p->k, c, s * s));
-        bad += !isfinite(p->model->f32.sigma(&p->f, (float)c, (float)(s * s)));
+        bad += !isfinite(p->model->density(&p->k, r2, z2));
+        bad += !isfinite(p->model->density_f(&p->f, (float)r2, (float)z2));
+        bad += !isfinite(p->model->sigma(&p->k, c, s * s));
+        bad += !isfinite(p->model->sigma_f(&p->f, (float)c, (float)(s * s)));
         l = hypot(c, s);
         if (l == 0)
             continue;
         c /= l;
         s /= l;
-        p->model->f64.visible(&p->k, s * cos(az), s * sin(az), c, u1, u2, m);
+        p->ops->f64.visible(&p->k, s * cos(az), s * sin(az), c, u1, u2, m);
         bad += !(isfinite(m[0]) && isfinite(m[1]) && isfinite(m[2]) && m[2] >= 0
                  && m[0] * m[0] + m[1] * m[1] + m[2] * m[2] > 0);
-        p->model->f32.visible(&p->f, (float)(s * cos(az)), (float)(s * sin(az)), (float)c, (float)u1,
+        p->ops->f32.visible(&p->f, (float)(s * cos(az)), (float)(s * sin(az)), (float)c, (float)u1,
                               (float)u2, f);
         bad += !(isfinite(f[0]) && isfinite(f[1]) && isfinite(f[2]) && f[2] >= 0
                  && f[0] * f[0] + f[1] * f[1] + f[2] * f[2] > 0);
-        p->model->f64.normal(&p->k, u1, u2, m);
+        p->ops->f64.normal(&p->k, u1, u2, m);
         bad += !(isfinite(m[0]) && isfinite(m[1]) && isfinite(m[2]) && m[2] >= 0);
-        p->model->f32.normal(&p->f, (float)u1, (float)u2, f);
+        p->ops->f32.normal(&p->f, (float)u1, (float)u2, f);
         bad += !(isfinite(f[0]) && isfinite(f[1]) && isfinite(f[2]) && f[2] >= 0);
     }
     report("no NaN, no infinity", p->gamma, bad, 0);
@@ -528,27 +529,27 @@ static void check_batch(const pair *p)
         for (j = 0; j < 5; j++)
             in32[j][i] = (float)in64[j][i] * (1 - 0x1p-23f);
     }
-    p->model->f64.visible_n(&p->k, BLOCK - 3, in64[0], in64[1], in64[2], in64[3], in64[4], out64[0],
-                            out64[1], out64[2]);
-    p->model->f32.visible_n(&p->f, BLOCK - 3, in32[0], in32[1], in32[2], in32[3], in32[4], out32[0],
-                            out32[1], out32[2]);
+    p->ops->f64.visible_n(&p->k, BLOCK - 3, in64[0], in64[1], in64[2], in64[3], in64[4], out64[0],
+                                 out64[1], out64[2]);
+    p->ops->f32.visible_n(&p->f, BLOCK - 3, in32[0], in32[1], in32[2], in32[3], in32[4], out32[0],
+                                 out32[1], out32[2]);
     for (i = 0; i < BLOCK - 3; i++) {
         double m[3];
         float f[3];
-        p->model->f64.visible(&p->k, in64[0][i], in64[1][i], in64[2][i], in64[3][i], in64[4][i], m);
-        p->model->f32.visible(&p->f, in32[0][i], in32[1][i], in32[2][i], in32[3][i], in32[4][i], f);
+        p->ops->f64.visible(&p->k, in64[0][i], in64[1][i], in64[2][i], in64[3][i], in64[4][i], m);
+        p->ops->f32.visible(&p->f, in32[0][i], in32[1][i], in32[2][i], in32[3][i], in32[4][i], f);
         for (j = 0; j < 3; j++)
             bad += memcmp(&m[j], &out64[j][i], sizeof m[j]) || memcmp(&f[j], &out32[j][i], sizeof f[j]);
     }
-    p->model->f64.sigma_n(&p->k, BLOCK, in64[2], in64[3], out64[0]);
-    p->model->f64.density_n(&p->k, BLOCK, in64[3], in64[4], out64[1]);
-    p->model->f32.sigma_n(&p->f, BLOCK, in32[2], in32[3], out32[0]);
-    p->model->f32.density_n(&p->f, BLOCK, in32[3], in32[4], out32[1]);
+    p->ops->f64.sigma_n(&p->k, BLOCK, 1, in64[0], in64[1], in64[2], out64[0]);
+    p->ops->f64.density_n(&p->k, BLOCK, in64[0], in64[1], in64[2], out64[1]);
+    p->ops->f32.sigma_n(&p->f, BLOCK, 1, in32[0], in32[1], in32[2], out32[0]);
+    p->ops->f32.density_n(&p->f, BLOCK, in32[0], in32[1], in32[2], out32[1]);
     for (i = 0; i < BLOCK; i++) {
-        bad += p->model->f64.sigma(&p->k, in64[2][i], in64[3][i]) != out64[0][i];
-        bad += p->model->f64.density(&p->k, in64[3][i], in64[4][i]) != out64[1][i];
-        bad += p->model->f32.sigma(&p->f, in32[2][i], in32[3][i]) != out32[0][i];
-        bad += p->model->f32.density(&p->f, in32[3][i], in32[4][i]) != out32[1][i];
+        bad += p->ops->f64.sigma(&p->k, in64[0][i], in64[1][i], in64[2][i]) != out64[0][i];
+        bad += p->ops->f64.density(&p->k, in64[0][i], in64[1][i], in64[2][i]) != out64[1][i];
+        bad += p->ops->f32.sigma(&p->f, in32[0][i], in32[1][i], in32[2][i]) != out32[0][i];
+        bad += p->ops->f32.density(&p->f, in32[0][i], in32[1][i], in32[2][i]) != out32[1][i];
     }
     report("batches give the single calls' bits", p->gamma, bad, 0);
 }
@@ -557,7 +558,7 @@ int main(void)
 {
     size_t g;
     for (g = 0; g <= GAMMAS; g++) {
-        pair p = make(g < GAMMAS ? &asp_model_student_t : &asp_model_beckmann,
+        pair p = make(g < GAMMAS ? &of_student_t : &of_beckmann,
                       g < GAMMAS ? gammas[g] : INFINITY);
         if (g == GAMMAS)
             printf("Beckmann's own record:\n");

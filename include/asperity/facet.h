@@ -9,11 +9,12 @@
 #define aspi_view ASP_NAME(aspi_view)
 #define aspi_facet ASP_NAME(aspi_facet)
 #define aspi_facet_back ASP_NAME(aspi_facet_back)
+#define aspi_vector ASP_NAME(aspi_vector)
 #define aspi_at ASP_NAME(aspi_at)
 #define aspi_dot ASP_NAME(aspi_dot)
 #define aspi_length2 ASP_NAME(aspi_length2)
 #define aspi_normalize ASP_NAME(aspi_normalize)
-#define aspi_density_arguments ASP_NAME(aspi_density_arguments)
+#define aspi_density_facet ASP_NAME(aspi_density_facet)
 #define aspi_density_result ASP_NAME(aspi_density_result)
 #define aspi_reflect ASP_NAME(aspi_reflect)
 #define aspi_masked ASP_NAME(aspi_masked)
@@ -37,14 +38,19 @@
 #define ASP_FACET_32
 #endif
 
+ASP_FN asp_v3 aspi_vector(asp_real x, asp_real y, asp_real z)
+{
+    asp_v3 v;
+    v.x = x;
+    v.y = y;
+    v.z = z;
+    return v;
+}
+
 /* Element i of a structure of arrays. */
 ASP_FN asp_v3 aspi_at(const asp_real *x, const asp_real *y, const asp_real *z, size_t i)
 {
-    asp_v3 v;
-    v.x = x[i];
-    v.y = y[i];
-    v.z = z[i];
-    return v;
+    return aspi_vector(x[i], y[i], z[i]);
 }
 
 ASP_FN asp_real aspi_dot(asp_v3 a, asp_v3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -109,15 +115,13 @@ ASP_FN asp_v3 aspi_facet_back(const asp_shape *k, asp_v3 m)
     return v;
 }
 
-/* What the distribution's density takes for D(m): z2 is 1 where the facet is vertical or turned down,
- * and aspi_density_result makes that 0. */
-ASP_FN asp_v2 aspi_density_arguments(const asp_shape *k, asp_v3 m)
+/* The same for D(m): its z is 1 where the facet is vertical or turned down, and aspi_density_result
+ * makes that 0. */
+ASP_FN asp_v3 aspi_density_facet(const asp_shape *k, asp_v3 m)
 {
     asp_v3 v = aspi_facet(k, m);
-    asp_v2 a;
-    a.x = aspi_length2(v);
-    a.y = v.z <= ASP_FLAT ? R(1.0) : v.z * v.z;
-    return a;
+    v.z = v.z <= ASP_FLAT ? R(1.0) : v.z;
+    return v;
 }
 
 /* D(m) = D_std(m') / |det M|; 0 for facets that are vertical or turned down. */

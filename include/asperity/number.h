@@ -64,6 +64,13 @@
 #define ndf_sigma ASP_NDF_NAME(_sigma)
 #define ndf_visible ASP_NDF_NAME(_visible)
 #define ndf_normal ASP_NDF_NAME(_normal)
+#define ndf_density_at ASP_NDF_NAME(_density_at)
+#define ndf_sigma_at ASP_NDF_NAME(_sigma_at)
+#define ndf_world_density ASP_NDF_NAME(_world_density)
+#define ndf_world_visible ASP_NDF_NAME(_world_visible)
+#define ndf_world_normal ASP_NDF_NAME(_world_normal)
+#define ndf_density_1 ASP_NDF_NAME(_density_1)
+#define ndf_sigma_1 ASP_NDF_NAME(_sigma_1)
 #define ndf_visible_1 ASP_NDF_NAME(_visible_1)
 #define ndf_normal_1 ASP_NDF_NAME(_normal_1)
 #define ndf_reflect_1 ASP_NDF_NAME(_reflect_1)
@@ -71,6 +78,9 @@
 #define ndf_sigma_n ASP_NDF_NAME(_sigma_n)
 #define ndf_visible_n ASP_NDF_NAME(_visible_n)
 #define ndf_normal_n ASP_NDF_NAME(_normal_n)
+
+/* Batches go in blocks of this many elements at most, about twenty arrays in use at a time: 20 KB. */
+#define ASP_BLOCK (ASP_PRECISION == 64 ? 128 : 256)
 
 #define ASP_PI 3.14159265358979323846
 #endif

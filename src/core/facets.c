@@ -1,7 +1,7 @@
 /* facets.c - D, P22, sigma, masking, normals and densities: asperity.h sections 5, 8 and 9
  *
  * Read three times: this head, then the body in each precision. Single calls and loops share every
- * formula; a loop is cut in stages so that the distribution's own loop can stand in the middle. */
+ * formula; a block is cut in stages so that the distribution's own loop can stand in the middle. */
 #ifndef ASP_PRECISION
 #include "asperity.h"
 #include "asperity_ndf.h"
@@ -19,13 +19,9 @@
 #ifndef ASPI_FACETS_NAMES
 #define ASPI_FACETS_NAMES
 #define visible_density ASP_NAME(visible_density)
-#define block_density ASP_NAME(block_density)
-#define block_sigma ASP_NAME(block_sigma)
-#define block_visible ASP_NAME(block_visible)
-#define block_lambda ASP_NAME(block_lambda)
-#define block_normal ASP_NAME(block_normal)
-#define visible_of ASP_NAME(visible_of)
-#define normal_of ASP_NAME(normal_of)
+#define slope_facet ASP_NAME(slope_facet)
+#define put_block ASP_NAME(put_block)
+#define any_among ASP_NAME(any_among)
 #define masking ASP_NAME(masking)
 #define lambda_of ASP_NAME(lambda_of)
 #define joint_masking ASP_NAME(joint_masking)
@@ -35,7 +31,6 @@
 #define loop_times ASP_NAME(loop_times)
 #define loop_visible_density ASP_NAME(loop_visible_density)
 #define loop_slopes ASP_NAME(loop_slopes)
-#define loop_slope_density ASP_NAME(loop_slope_density)
 #endif
 
 #define IN const asp_real *ASP_RESTRICT
@@ -84,52 +79,30 @@ ASP_FN asp_real joint_masking(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_v3 m
 
 /* ---- single calls */
 
-/* The distribution's single samplers, mapped back. */
-ASP_FN asp_v3 visible_of(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
-{
-    asp_real m[3];
-    asp_v3 out;
-    ASPI_OPS(k).visible(k, v.x, v.y, v.z, u1, u2, m);
-    out.x = m[0];
-    out.y = m[1];
-    out.z = m[2];
-    return aspi_normalize(aspi_facet_back(k, out));
-}
-
-ASP_FN asp_v3 normal_of(const asp_shape *k, asp_real u1, asp_real u2)
-{
-    asp_real m[3];
-    asp_v3 out;
-    ASPI_OPS(k).normal(k, u1, u2, m);
-    out.x = m[0];
-    out.y = m[1];
-    out.z = m[2];
-    return aspi_normalize(aspi_facet_back(k, out));
-}
-
 asp_real ASPI_CALL(asp_D)(const asp_shape *k, asp_v3 m)
 {
-    asp_v2 a = aspi_density_arguments(k, m);
-    return aspi_density_result(k, ASPI_OPS(k).density(k, a.x, a.y), m.z);
+    return ASPI_OPS(k).density(k, m.x, m.y, m.z);
+}
+
+/* The vector (-p, 1), whose D is P22; the flat one where the standard surface's slope is too steep. */
+ASP_FN asp_v3 slope_facet(const asp_shape *k, asp_real p_x, asp_real p_y)
+{
+    asp_v3 m = aspi_vector(-p_x, -p_y, R(1.0));
+    int steep = aspi_length2(aspi_facet(k, m)) > ASP_STEEPEST;
+    m.x = steep ? R(0.0) : m.x;
+    m.y = steep ? R(0.0) : m.y;
+    m.z = steep ? R(0.0) : m.z;
+    return m;
 }
 
 asp_real ASPI_CALL(asp_P22)(const asp_shape *k, asp_real p_x, asp_real p_y)
 {
-    asp_v3 m, v;
-    asp_real r2, d;
-    m.x = -p_x;
-    m.y = -p_y;
-    m.z = R(1.0);
-    v = aspi_facet(k, m);
-    r2 = aspi_length2(v);
-    d = ASPI_OPS(k).density(k, aspi_min(r2, ASP_STEEPEST), R(1.0)) * k->inv_det;
-    return r2 > ASP_STEEPEST ? R(0.0) : d;
+    return ASPI_CALL(asp_D)(k, slope_facet(k, p_x, p_y));
 }
 
 asp_real ASPI_CALL(asp_sigma)(const asp_shape *k, asp_v3 w)
 {
-    asp_v3 v = aspi_view(k, w);
-    return ASPI_OPS(k).sigma(k, v.z, aspi_length2(v));
+    return ASPI_OPS(k).sigma(k, w.x, w.y, w.z);
 }
 
 asp_real ASPI_CALL(asp_G1)(const asp_shape *k, asp_v3 w, int mask)
@@ -139,8 +112,7 @@ asp_real ASPI_CALL(asp_G1)(const asp_shape *k, asp_v3 w, int mask)
 
 asp_real ASPI_CALL(asp_lambda)(const asp_shape *k, asp_v3 w, int mask)
 {
-    asp_v3 v = aspi_view(k, w);
-    return lambda_of(k, w, ASPI_OPS(k).sigma(k, -v.z, aspi_length2(v)), mask);
+    return lambda_of(k, w, ASPI_OPS(k).sigma(k, -w.x, -w.y, -w.z), mask);
 }
 
 asp_real ASPI_CALL(asp_G2)(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_v3 m, int mask)
@@ -151,12 +123,16 @@ asp_real ASPI_CALL(asp_G2)(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_v3 m, i
 
 asp_v3 ASPI_CALL(asp_sample_normal)(const asp_shape *k, asp_real u1, asp_real u2)
 {
-    return normal_of(k, u1, u2);
+    asp_real m[3];
+    ASPI_OPS(k).normal(k, u1, u2, m);
+    return aspi_vector(m[0], m[1], m[2]);
 }
 
 asp_v3 ASPI_CALL(asp_sample_visible)(const asp_shape *k, asp_v3 wi, asp_real u1, asp_real u2)
 {
-    return visible_of(k, aspi_view(k, wi), u1, u2);
+    asp_real m[3];
+    ASPI_OPS(k).visible(k, wi.x, wi.y, wi.z, u1, u2, m);
+    return aspi_vector(m[0], m[1], m[2]);
 }
 
 asp_real ASPI_CALL(asp_pdf_normal)(const asp_shape *k, asp_v3 m)
@@ -200,7 +176,7 @@ ASP_CLONES static void loop_masking(const asp_shape *k, size_t n, int mask, asp_
     }
 }
 
-ASP_FN void loop_hidden(const asp_shape *k, size_t n, int mask, asp_cv3s w,
+ASP_CLONES static void loop_hidden(const asp_shape *k, size_t n, int mask, asp_cv3s w,
                                    const asp_real *below, asp_real *out)
 {
     size_t i;
@@ -247,149 +223,145 @@ ASP_CLONES static void loop_times(size_t n, const asp_real *a, const asp_real *b
         out[i] = a[i] * b[i];
 }
 
-ASP_CLONES static void loop_slopes(const asp_shape *k, size_t n, IN p_x, IN p_y, OUT all, OUT r2,
-                                   OUT z2)
+ASP_CLONES static void loop_slopes(const asp_shape *k, size_t n, IN p_x, IN p_y, OUT mx, OUT my,
+                                   OUT mz)
 {
     size_t i;
     for (i = 0; i < n; i++) {
-        asp_v3 m;
-        m.x = -p_x[i];
-        m.y = -p_y[i];
-        m.z = R(1.0);
-        all[i] = aspi_length2(aspi_facet(k, m));
-        r2[i] = aspi_min(all[i], ASP_STEEPEST);
-        z2[i] = R(1.0);
+        asp_v3 m = slope_facet(k, p_x[i], p_y[i]);
+        mx[i] = m.x;
+        my[i] = m.y;
+        mz[i] = m.z;
     }
-}
-
-ASP_CLONES static void loop_slope_density(size_t n, asp_real by, IN all, IN standard, OUT out)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_real d = standard[i] * by;
-        out[i] = all[i] > ASP_STEEPEST ? R(0.0) : d;
-    }
-}
-
-/* ---- blocks, one per instruction set */
-
-ASP_CLONES static void block_density(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
-{
-    aspi_block_density(k, n, m, out);
-}
-
-ASP_CLONES static void block_sigma(const asp_shape *k, size_t n, asp_cv3s w, asp_real *out)
-{
-    aspi_block_sigma(k, n, w, out);
-}
-
-ASP_CLONES static void block_visible(const asp_shape *k, size_t n, asp_cv3s wi, const asp_real *u1,
-                                     const asp_real *u2, asp_v3s m)
-{
-    aspi_block_visible(k, n, wi, u1, u2, m);
-}
-
-ASP_CLONES static void block_lambda(const asp_shape *k, size_t n, asp_cv3s w, int mask,
-                                    asp_real *out)
-{
-    asp_real h[ASPI_BLOCK], s2[ASPI_BLOCK], below[ASPI_BLOCK];
-    if (!n)
-        return;
-    aspi_loop_view(k, n, R(-1.0), w.x, w.y, w.z, h, s2);
-    ASPI_OPS(k).sigma_n(k, n, h, s2, below);
-    loop_hidden(k, n, mask, w, below, out);
-}
-
-ASP_CLONES static void block_normal(const asp_shape *k, size_t n, const asp_real *u1,
-                                    const asp_real *u2, asp_v3s m)
-{
-    asp_real x[ASPI_BLOCK], y[ASPI_BLOCK], z[ASPI_BLOCK];
-    if (!n)
-        return;
-    ASPI_OPS(k).normal_n(k, n, u1, u2, x, y, z);
-    aspi_loop_back(k, n, x, y, z, m.x, m.y, m.z);
 }
 
 /* ---- batches: block by block; a block's inputs are read before its outputs are written */
 
 void ASPI_CALL(asp_D_n)(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
 {
+    asp_real d[ASP_BLOCK];
+    int in_place = aspi_among(out, m);
     size_t i, size;
-    ASPI_FOR_BLOCKS(i, size, n)
-        block_density(k, size, ASPI_FROM(m, i), out + i);
+    ASPI_FOR_BLOCKS(i, size, n) {
+        ASPI_OPS(k).density_n(k, size, m.x + i, m.y + i, m.z + i, in_place ? d : out + i);
+        if (in_place)
+            memcpy(out + i, d, size * sizeof *d);
+    }
 }
 
 void ASPI_CALL(asp_P22_n)(const asp_shape *k, size_t n, const asp_real *p_x, const asp_real *p_y,
                           asp_real *out)
 {
-    asp_real all[ASPI_BLOCK], r2[ASPI_BLOCK], z2[ASPI_BLOCK], d[ASPI_BLOCK];
+    asp_real x[ASP_BLOCK], y[ASP_BLOCK], z[ASP_BLOCK];
     size_t i, size;
     ASPI_FOR_BLOCKS(i, size, n) {
-        loop_slopes(k, size, p_x + i, p_y + i, all, r2, z2);
-        ASPI_OPS(k).density_n(k, size, r2, z2, d);
-        loop_slope_density(size, k->inv_det, all, d, out + i);
+        loop_slopes(k, size, p_x + i, p_y + i, x, y, z);
+        ASPI_OPS(k).density_n(k, size, x, y, z, out + i);
     }
 }
 
 void ASPI_CALL(asp_sigma_n)(const asp_shape *k, size_t n, asp_cv3s w, asp_real *out)
 {
+    asp_real sigma[ASP_BLOCK];
+    int in_place = aspi_among(out, w);
     size_t i, size;
-    ASPI_FOR_BLOCKS(i, size, n)
-        block_sigma(k, size, ASPI_FROM(w, i), out + i);
+    ASPI_FOR_BLOCKS(i, size, n) {
+        ASPI_OPS(k).sigma_n(k, size, R(1.0), w.x + i, w.y + i, w.z + i, in_place ? sigma : out + i);
+        if (in_place)
+            memcpy(out + i, sigma, size * sizeof *sigma);
+    }
 }
 
 void ASPI_CALL(asp_G1_n)(const asp_shape *k, size_t n, asp_cv3s w, int mask, asp_real *out)
 {
-    asp_real sigma[ASPI_BLOCK];
+    asp_real sigma[ASP_BLOCK];
     size_t i, size;
     ASPI_FOR_BLOCKS(i, size, n) {
-        block_sigma(k, size, ASPI_FROM(w, i), sigma);
+        ASPI_OPS(k).sigma_n(k, size, R(1.0), w.x + i, w.y + i, w.z + i, sigma);
         loop_masking(k, size, mask, ASPI_FROM(w, i), sigma, out + i);
     }
 }
 
 void ASPI_CALL(asp_lambda_n)(const asp_shape *k, size_t n, asp_cv3s w, int mask, asp_real *out)
 {
+    asp_real below[ASP_BLOCK];
     size_t i, size;
-    ASPI_FOR_BLOCKS(i, size, n)
-        block_lambda(k, size, ASPI_FROM(w, i), mask, out + i);
+    ASPI_FOR_BLOCKS(i, size, n) {
+        ASPI_OPS(k).sigma_n(k, size, R(-1.0), w.x + i, w.y + i, w.z + i, below);
+        loop_hidden(k, size, mask, ASPI_FROM(w, i), below, out + i);
+    }
 }
 
 void ASPI_CALL(asp_G2_n)(const asp_shape *k, size_t n, asp_cv3s wi, asp_cv3s wo, asp_cv3s m,
                          int mask, asp_real *out)
 {
-    asp_real sigma_i[ASPI_BLOCK], sigma_o[ASPI_BLOCK];
+    asp_real sigma_i[ASP_BLOCK], sigma_o[ASP_BLOCK];
     size_t i, size;
     ASPI_FOR_BLOCKS(i, size, n) {
-        block_sigma(k, size, ASPI_FROM(wi, i), sigma_i);
-        block_sigma(k, size, ASPI_FROM(wo, i), sigma_o);
+        ASPI_OPS(k).sigma_n(k, size, R(1.0), wi.x + i, wi.y + i, wi.z + i, sigma_i);
+        ASPI_OPS(k).sigma_n(k, size, R(1.0), wo.x + i, wo.y + i, wo.z + i, sigma_o);
         loop_joint(k, size, mask, ASPI_FROM(wi, i), ASPI_FROM(wo, i), ASPI_FROM(m, i), sigma_i, sigma_o,
                    out + i);
     }
 }
 
+/* A block's normals, of which some may go where its inputs are. */
+static void put_block(asp_v3s to, size_t i, size_t size, asp_real m[3][ASP_BLOCK])
+{
+    memcpy(to.x + i, m[0], size * sizeof **m);
+    memcpy(to.y + i, m[1], size * sizeof **m);
+    memcpy(to.z + i, m[2], size * sizeof **m);
+}
+
+ASP_FN int any_among(asp_v3s out, const asp_real *a, const asp_real *b, const asp_real *c)
+{
+    asp_cv3s in;
+    in.x = a;
+    in.y = b;
+    in.z = c;
+    return aspi_among(out.x, in) || aspi_among(out.y, in) || aspi_among(out.z, in);
+}
+
 void ASPI_CALL(asp_sample_normal_n)(const asp_shape *k, size_t n, const asp_real *u1,
                                     const asp_real *u2, asp_v3s m)
 {
+    asp_real s[3][ASP_BLOCK];
+    int in_place = any_among(m, u1, u2, u2);
     size_t i, size;
-    ASPI_FOR_BLOCKS(i, size, n)
-        block_normal(k, size, u1 + i, u2 + i, ASPI_TO(m, i));
+    ASPI_FOR_BLOCKS(i, size, n) {
+        if (in_place) {
+            ASPI_OPS(k).normal_n(k, size, u1 + i, u2 + i, s[0], s[1], s[2]);
+            put_block(m, i, size, s);
+        } else {
+            ASPI_OPS(k).normal_n(k, size, u1 + i, u2 + i, m.x + i, m.y + i, m.z + i);
+        }
+    }
 }
 
 void ASPI_CALL(asp_sample_visible_n)(const asp_shape *k, size_t n, asp_cv3s wi, const asp_real *u1,
                                      const asp_real *u2, asp_v3s m)
 {
+    asp_real s[3][ASP_BLOCK];
+    int in_place = any_among(m, wi.x, wi.y, wi.z) || any_among(m, u1, u2, u2);
     size_t i, size;
-    ASPI_FOR_BLOCKS(i, size, n)
-        block_visible(k, size, ASPI_FROM(wi, i), u1 + i, u2 + i, ASPI_TO(m, i));
+    ASPI_FOR_BLOCKS(i, size, n) {
+        if (in_place) {
+            ASPI_OPS(k).visible_n(k, size, wi.x + i, wi.y + i, wi.z + i, u1 + i, u2 + i, s[0], s[1],
+                                  s[2]);
+            put_block(m, i, size, s);
+        } else {
+            ASPI_OPS(k).visible_n(k, size, wi.x + i, wi.y + i, wi.z + i, u1 + i, u2 + i, m.x + i,
+                                  m.y + i, m.z + i);
+        }
+    }
 }
 
 void ASPI_CALL(asp_pdf_normal_n)(const asp_shape *k, size_t n, asp_cv3s m, asp_real *out)
 {
-    asp_real d[ASPI_BLOCK];
+    asp_real d[ASP_BLOCK];
     size_t i, size;
     ASPI_FOR_BLOCKS(i, size, n) {
-        block_density(k, size, ASPI_FROM(m, i), d);
+        ASPI_OPS(k).density_n(k, size, m.x + i, m.y + i, m.z + i, d);
         loop_times(size, d, m.z + i, out + i);
     }
 }
@@ -397,11 +369,11 @@ void ASPI_CALL(asp_pdf_normal_n)(const asp_shape *k, size_t n, asp_cv3s m, asp_r
 void ASPI_CALL(asp_pdf_visible_n)(const asp_shape *k, size_t n, asp_cv3s wi, asp_cv3s m,
                                   asp_real *out)
 {
-    asp_real d[ASPI_BLOCK], sigma[ASPI_BLOCK];
+    asp_real d[ASP_BLOCK], sigma[ASP_BLOCK];
     size_t i, size;
     ASPI_FOR_BLOCKS(i, size, n) {
-        block_density(k, size, ASPI_FROM(m, i), d);
-        block_sigma(k, size, ASPI_FROM(wi, i), sigma);
+        ASPI_OPS(k).density_n(k, size, m.x + i, m.y + i, m.z + i, d);
+        ASPI_OPS(k).sigma_n(k, size, R(1.0), wi.x + i, wi.y + i, wi.z + i, sigma);
         loop_visible_density(size, ASPI_FROM(wi, i), ASPI_FROM(m, i), d, sigma, out + i);
     }
 }

@@ -64,14 +64,12 @@ ASP_FN void value_of(const asp_mat *mat, asp_real c, asp_real x, asp_real y, asp
 /* D(m) and sigma(w) without leaving this file. */
 ASP_FN asp_real density_of(const asp_shape *k, asp_v3 m)
 {
-    asp_v2 a = aspi_density_arguments(k, m);
-    return aspi_density_result(k, ASPI_OPS(k).density(k, a.x, a.y), m.z);
+    return ASPI_OPS(k).density(k, m.x, m.y, m.z);
 }
 
 ASP_FN asp_real sigma_of(const asp_shape *k, asp_v3 w)
 {
-    asp_v3 v = aspi_view(k, w);
-    return ASPI_OPS(k).sigma(k, v.z, aspi_length2(v));
+    return ASPI_OPS(k).sigma(k, w.x, w.y, w.z);
 }
 
 static asp_real share_of(const asp_mat *mat, asp_real ci)

@@ -229,7 +229,7 @@ ASP_FN void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c, asp_r
 
 ASP_FN void block_share(const asp_mat *mat, size_t n, const asp_real *ci, asp_real *share)
 {
-    asp_real F[3][ASPI_BLOCK];
+    asp_real F[3][ASP_BLOCK];
     if (!n)
         return;
     block_fresnel(mat, n, ci, F[0], F[1], F[2]);
@@ -241,22 +241,18 @@ ASP_CLONES static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp
                                   asp_c3s out)
 {
     const asp_shape *k = &mat->ndf;
-    asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
-    asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], so[ASPI_BLOCK], x[ASPI_BLOCK], y[ASPI_BLOCK];
-    asp_real ones[ASPI_BLOCK], F[3][ASPI_BLOCK];
-    asp_cv3s m;
+    asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK];
+    asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK], y[ASP_BLOCK];
+    asp_real ones[ASP_BLOCK], F[3][ASP_BLOCK];
     size_t i;
     if (!n)
         return;
     for (i = 0; i < n && !cosine; i++)
         ones[i] = R(1.0);
     loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
-    m.x = mx;
-    m.y = my;
-    m.z = mz;
-    aspi_block_density(k, n, m, D);
-    aspi_block_sigma(k, n, wi, si);
-    aspi_block_sigma(k, n, wo, so);
+    ASPI_OPS(k).density_n(k, n, mx, my, mz, D);
+    ASPI_OPS(k).sigma_n(k, n, R(1.0), wi.x, wi.y, wi.z, si);
+    ASPI_OPS(k).sigma_n(k, n, R(1.0), wo.x, wo.y, wo.z, so);
     if (mat->mask == 0)
         loop_parts(k, n, 0, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
     else
@@ -271,17 +267,13 @@ ASP_CLONES static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp
 ASP_CLONES static void block_pdf(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
 {
     const asp_shape *k = &mat->ndf;
-    asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
-    asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], share[ASPI_BLOCK], p[ASPI_BLOCK];
-    asp_cv3s m;
+    asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK];
+    asp_real D[ASP_BLOCK], si[ASP_BLOCK], share[ASP_BLOCK], p[ASP_BLOCK];
     if (!n)
         return;
     loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
-    m.x = mx;
-    m.y = my;
-    m.z = mz;
-    aspi_block_density(k, n, m, D);
-    aspi_block_sigma(k, n, wi, si);
+    ASPI_OPS(k).density_n(k, n, mx, my, mz, D);
+    ASPI_OPS(k).sigma_n(k, n, R(1.0), wi.x, wi.y, wi.z, si);
     loop_lobe_density(n, wi.z, D, si, p);
     if (mat->model->mixed) {
         block_share(mat, n, wi.z, share);
@@ -293,27 +285,23 @@ ASP_CLONES static void block_pdf(const asp_mat *mat, size_t n, asp_cv3s wi, asp_
 /* Visible normals only: D cancels in the weight, which is F J sigma_i cos_o. */
 ASP_CLONES static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s wi,
                                          const asp_real *u1,
-                                         const asp_real *u2, asp_real o[3][ASPI_BLOCK], asp_real *pdf,
-                                         asp_real F[3][ASPI_BLOCK])
+                                         const asp_real *u2, asp_real o[3][ASP_BLOCK], asp_real *pdf,
+                                         asp_real F[3][ASP_BLOCK])
 {
     const asp_shape *k = &mat->ndf;
-    asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
-    asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], so[ASPI_BLOCK], x[ASPI_BLOCK];
-    asp_v3s m;
-    asp_cv3s cm, wo;
+    asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK];
+    asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK];
+    asp_cv3s wo;
     if (!n)
         return;
-    cm.x = m.x = mx;
-    cm.y = m.y = my;
-    cm.z = m.z = mz;
     wo.x = o[0];
     wo.y = o[1];
     wo.z = o[2];
-    aspi_block_visible(k, n, wi, u1, u2, m);
+    ASPI_OPS(k).visible_n(k, n, wi.x, wi.y, wi.z, u1, u2, mx, my, mz);
     loop_reflect(n, wi.x, wi.y, wi.z, mx, my, mz, o[0], o[1], o[2], c);
-    aspi_block_density(k, n, cm, D);
-    aspi_block_sigma(k, n, wi, si);
-    aspi_block_sigma(k, n, wo, so);
+    ASPI_OPS(k).density_n(k, n, mx, my, mz, D);
+    ASPI_OPS(k).sigma_n(k, n, R(1.0), wi.x, wi.y, wi.z, si);
+    ASPI_OPS(k).sigma_n(k, n, R(1.0), wo.x, wo.y, wo.z, so);
     loop_lobe_density(n, wi.z, D, si, pdf);
     if (mat->mask == 0) /* a constant here spares the default the other masks' arithmetic */
         loop_weights(k, n, 0, wi, o[0], o[1], o[2], mz, c, si, so, x);
@@ -325,32 +313,28 @@ ASP_CLONES static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s 
 
 ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s wi,
                                           const asp_real *u1,
-                                          const asp_real *u2, asp_real o[3][ASPI_BLOCK], asp_real *pdf,
-                                          asp_real F[3][ASPI_BLOCK])
+                                          const asp_real *u2, asp_real o[3][ASP_BLOCK], asp_real *pdf,
+                                          asp_real F[3][ASP_BLOCK])
 {
     const asp_shape *k = &mat->ndf;
-    asp_real mx[ASPI_BLOCK], my[ASPI_BLOCK], mz[ASPI_BLOCK], c[ASPI_BLOCK];
-    asp_real D[ASPI_BLOCK], si[ASPI_BLOCK], so[ASPI_BLOCK], x[ASPI_BLOCK], y[ASPI_BLOCK];
-    asp_real share[ASPI_BLOCK], facet[ASPI_BLOCK], v1[ASPI_BLOCK];
-    asp_v3s m;
-    asp_cv3s cm, wo;
+    asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK];
+    asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK], y[ASP_BLOCK];
+    asp_real share[ASP_BLOCK], facet[ASP_BLOCK], v1[ASP_BLOCK];
+    asp_cv3s wo;
     if (!n)
         return;
-    cm.x = m.x = mx;
-    cm.y = m.y = my;
-    cm.z = m.z = mz;
     wo.x = o[0];
     wo.y = o[1];
     wo.z = o[2];
     block_share(mat, n, wi.z, share);
     loop_choose(n, share, u1, facet, v1);
-    aspi_block_visible(k, n, wi, v1, u2, m);
+    ASPI_OPS(k).visible_n(k, n, wi.x, wi.y, wi.z, v1, u2, mx, my, mz);
     loop_reflect(n, wi.x, wi.y, wi.z, mx, my, mz, o[0], o[1], o[2], c);
     loop_mixed_direction(n, wi, facet, v1, u2, o[0], o[1], o[2]);
     loop_half(n, wi.x, wi.y, wi.z, o[0], o[1], o[2], mx, my, mz, c);
-    aspi_block_density(k, n, cm, D);
-    aspi_block_sigma(k, n, wi, si);
-    aspi_block_sigma(k, n, wo, so);
+    ASPI_OPS(k).density_n(k, n, mx, my, mz, D);
+    ASPI_OPS(k).sigma_n(k, n, R(1.0), wi.x, wi.y, wi.z, si);
+    ASPI_OPS(k).sigma_n(k, n, R(1.0), wo.x, wo.y, wo.z, so);
     loop_lobe_density(n, wi.z, D, si, pdf);
     loop_mixed_density(n, wi.z, o[2], share, pdf);
     loop_mixed_parts(k, n, mat->mask, wi, o[0], o[1], o[2], mz, c, D, si, so, pdf, x, y);
@@ -384,7 +368,7 @@ void ASPI_CALL(asp_pdf_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo
 void ASPI_CALL(asp_sample_n)(const asp_mat *mat, size_t n, asp_cv3s wi, const asp_real *u1,
                              const asp_real *u2, asp_v3s wo, asp_real *pdf, asp_c3s weight)
 {
-    asp_real o[3][ASPI_BLOCK], p[ASPI_BLOCK], F[3][ASPI_BLOCK];
+    asp_real o[3][ASP_BLOCK], p[ASP_BLOCK], F[3][ASP_BLOCK];
     size_t i, size;
     ASPI_FOR_BLOCKS(i, size, n) {
         size_t bytes = size * sizeof(asp_real);

@@ -65,8 +65,8 @@ static void invert(asp_ndf *ndf)
     ndf->inv_det = 1.0 / aspi_abs(det);
 }
 
-asp_status asp_ndf_make(const asp_model *model, const asp_map *map, const double *shape,
-                        asp_ndf *out, asp_error *err)
+asp_status asp_ndf_make_data(const asp_model *model, const asp_map *map, const double *shape,
+                             const void *data, asp_ndf *out, asp_error *err)
 {
     asp_ndf ndf;
     asp_status s;
@@ -80,12 +80,19 @@ asp_status asp_ndf_make(const asp_model *model, const asp_map *map, const double
     memset(&ndf, 0, sizeof ndf);
     ndf.model = model;
     ndf.map = *map;
+    ndf.data = data;
     s = prepare(&ndf, shape, err);
     if (s)
         return s;
     invert(&ndf);
     *out = ndf;
     return ASP_OK;
+}
+
+asp_status asp_ndf_make(const asp_model *model, const asp_map *map, const double *shape,
+                        asp_ndf *out, asp_error *err)
+{
+    return asp_ndf_make_data(model, map, shape, NULL, out, err);
 }
 
 asp_ndff asp_ndf_narrow(const asp_ndf *ndf)
@@ -108,5 +115,6 @@ asp_ndff asp_ndf_narrow(const asp_ndf *ndf)
         out.shape[i] = (float)ndf->shape[i];
     for (i = 0; i < ASP_TABLE_NUMBERS; i++)
         out.table[i] = (float)ndf->table[i];
+    out.data = ndf->data;
     return out;
 }

@@ -4,6 +4,8 @@
  * infinite (Beckmann), so that powers become exponentials and n disappears. student.h says what the
  * table holds. */
 
+#include "asperity/facet.h"
+
 #ifndef STUDENT_KERNEL_NAMES
 #define STUDENT_KERNEL_NAMES
 #define student_decay ASP_NDF_NAME(_decay)
@@ -380,9 +382,9 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
     a.r_view = f[6][i]; a.r = f[7][i];
 
 #define ASP_OWN_VISIBLE_N
-ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT vx,
-                                     const asp_real *ASP_RESTRICT vy,
-                                     const asp_real *ASP_RESTRICT vz,
+ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT wx,
+                                     const asp_real *ASP_RESTRICT wy,
+                                     const asp_real *ASP_RESTRICT wz,
                                      const asp_real *ASP_RESTRICT u1,
                                      const asp_real *ASP_RESTRICT u2, asp_real *ASP_RESTRICT mx,
                                      asp_real *ASP_RESTRICT my, asp_real *ASP_RESTRICT mz)
@@ -394,11 +396,7 @@ ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_rea
         count = n - from < STUDENT_BLOCK ? n - from : STUDENT_BLOCK;
         for (i = 0; i < count; i++) {
             student_search a;
-            asp_v3 v;
-            v.x = vx[from + i];
-            v.y = vy[from + i];
-            v.z = vz[from + i];
-            a = student_start(k, v, u1[from + i]);
+            a = student_start(k, aspi_view(k, aspi_at(wx, wy, wz, from + i)), u1[from + i]);
             f[0][i] = a.c;
             f[1][i] = a.s;
             f[2][i] = a.side;
@@ -425,11 +423,12 @@ ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_rea
             f[1][i] = across.y;
         }
         for (i = 0; i < count; i++) {
+            asp_v3 v = aspi_view(k, aspi_at(wx, wy, wz, from + i)), m;
             asp_v2 across;
-            asp_v3 m;
             across.x = f[0][i];
             across.y = f[1][i];
-            m = student_normal(k, f[7][i], f[2][i], across, vx[from + i], vy[from + i]);
+            m = aspi_normalize(aspi_facet_back(k, student_normal(k, f[7][i], f[2][i], across, v.x,
+                                                                 v.y)));
             mx[from + i] = m.x;
             my[from + i] = m.y;
             mz[from + i] = m.z;
