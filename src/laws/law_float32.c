@@ -64,8 +64,11 @@ static double density_allowance(const aspi_trial *t, asp_vec3 m, double D)
 {
     asp_vec3 top = asp_mean_normal(t->ndf);
     double z4 = m.z * m.z / (top.z * top.z), peak = asp_D(t->ndf, top);
+    /* what the standard surface's P22 loses below the least normal number of float32 */
+    double lost = 2e-38 * t->ndf->inv_det / (m.z * m.z * m.z * m.z);
     /* of the peak in slopes: D = P22/cos^4 grows without bound towards vertical facets */
-    return (D * z4 * z4 < 1e-6 * peak ? 1e-4 : 2e-6) + slope_rounding(t, m) + record_rounding(t, m);
+    return (D * z4 * z4 < 1e-6 * peak ? 1e-4 : 2e-6) + slope_rounding(t, m) + record_rounding(t, m)
+         + lost / D;
 }
 
 /* Relative distance of x from the interval that the roundings of the view's height and length span. */

@@ -331,7 +331,7 @@ void aspi_law_density_visible(aspi_trial *t)
                           "%s, m = (%.6g, %.6g, %.6g): %.17g, formula %.17g", t->views[i].name,
                           m.x, m.y, m.z, pdf, expected);
         }
-        if (!(sigma > 1e-200)) /* nothing can be seen from there */
+        if (!(sigma > 1e-150)) /* nothing can be seen from there */
             continue;
         sum = visible_integral(t, w);
         aspi_find(t, fabs(sum - 1), 1e-7, "%s: integral %.12g", t->views[i].name, sum);

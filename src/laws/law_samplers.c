@@ -175,7 +175,7 @@ void aspi_law_sample_visible(aspi_trial *t)
     for (i = 0; i < tests; i++) {
         double p;
         s.view = i < t->view_count ? &t->views[i] : &below[i - t->view_count];
-        if (!(asp_sigma(t->ndf, s.view->w) > 1e-200)) /* no facet to be seen */
+        if (!(asp_sigma(t->ndf, s.view->w) > 1e-150)) /* no facet to be seen */
             continue;
         p = test_stream(t, &s, s.view->name);
         aspi_find(t, aspi_sidak(p, tests), ALLOWED, "%s, p = %.3g of %zu samples", s.view->name, p,
@@ -200,7 +200,7 @@ static void each_material(aspi_trial *t, int weights)
             asp_material mat = aspi_material(t->ndf, kinds[k], &name);
             sampling s;
             double p;
-            if (!(asp_sigma(t->ndf, t->views[i].w) > 1e-200)) /* no facet to be seen */
+            if (!(asp_sigma(t->ndf, t->views[i].w) > 1e-150)) /* no facet to be seen */
                 continue;
             s.ndf = t->ndf;
             s.mat = &mat;
@@ -277,7 +277,7 @@ void aspi_law_continuity(aspi_trial *t)
         path p;
         const aspi_view *v = &t->views[(size_t)(i / 4) % t->view_count];
         double jump, at;
-        if (!(asp_sigma(t->ndf, v->w) > 1e-200))
+        if (!(asp_sigma(t->ndf, v->w) > 1e-150))
             continue;
         p.sampler = i % 4 > 1;
         p.axis = i % 2;
