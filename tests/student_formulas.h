@@ -3,6 +3,9 @@
 #define STUDENT_FORMULAS_H
 
 #define asp_model_student_t formulas_student_t
+#define asp_model_phong formulas_phong
+#define asp_model_hyper_cauchy formulas_hyper_cauchy
+#define asp_model_student_t_general formulas_student_t_general
 #define asp_model_beckmann formulas_beckmann
 #define asp_model_ggx formulas_ggx
 #define asp_model_ellipsoid formulas_ellipsoid
