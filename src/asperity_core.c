@@ -38,9 +38,13 @@
 #undef ASP_PRECISION
 #include "bsdf/lambert_specular.c"
 #undef ASP_PRECISION
+#include "ndf/abc.c"
+#undef ASP_PRECISION
 #include "ndf/beckmann.c"
 #undef ASP_PRECISION
 #include "ndf/ggx.c"
+#undef ASP_PRECISION
+#include "ndf/prepared.c"
 #undef ASP_PRECISION
 #include "ndf/student_forms.c"
 #undef ASP_PRECISION

@@ -22,7 +22,7 @@
  *
  * What is asked of the density: finite and positive at r = 0, falling at least as r^-4 times a constant far
  * out (every density of normals that is finite for vertical facets does), smooth on a logarithmic scale of
- * r, defined for r2 from 0 to 1e40; steps from one scale to another are found by themselves. */
+ * r, defined for r2 from 0 to 1e40. Several scales in one density are found by themselves. */
 #ifndef ASPI_PREPARED_H
 #define ASPI_PREPARED_H
 
@@ -38,6 +38,34 @@ typedef double aspi_log_density(const asp_ndf *k, double r2);
  * without a closed normalisation subtracts, and 0 within 1e-9 where f is normalised. */
 asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err);
 
-enum { PREPARED_LOG_MASS = PREPARED_OWN };
+/* ---- the tables, for prepared_kernel.h: coefficients of uniform cubic B-splines, divided by 6
+ *
+ * With T0 = 2 J(0), J as in student.h, slopes in units of T0 and q = |w|/(T0 s):
+ *     AREA      E = 2 J (mu + sqrt(mu^2 + T0^2)) / T0^2 over v = sqrt q/(1 + sqrt q) in [0, 1];
+ *               1 for GGX, whose T0 is 1
+ *     BELOW     log of J/(P22(mu) (mu^2 + T0^2)^(3/2)) over q^(1/4)/(1 + q^(1/4)): what is seen from below
+ *               the mean plane keeps its relative accuracy
+ *     NORMAL    log(r/sqrt e) over z = e^(1/4), e = -log Q(r), Q(r) the share of slopes beyond r
+ *     TAIL      radius of the slopes that a view below the mean plane sees, over v and rho^(1/4),
+ *               rho = -log of the share beyond; see prepared_kernel.h */
+#define PREPARED_AREA_CELLS 128
+#define PREPARED_BELOW_CELLS 128
+#define PREPARED_NORMAL_CELLS 96
+#define PREPARED_VIEW_CELLS 16
+#define PREPARED_TAIL_CELLS 26
+#define PREPARED_TAIL_ROW (PREPARED_TAIL_CELLS + 3)
+#define PREPARED_LEAST 0x1p-53          /* the least share that is told from none; e, rho up to 36.8 */
+#define PREPARED_Z_END 2.4625           /* (-log of it)^(1/4), rounded up */
+#define PREPARED_VIEW_END 0.96875       /* v beyond this counts as this for TAIL */
+
+enum {
+    PREPARED_LOG_MASS = PREPARED_OWN,
+    PREPARED_SCALE,              /* T0 = twice the area seen edge-on, E|x|: the unit of slopes; */
+    PREPARED_SCALE2,             /* its square */
+    PREPARED_AREA = PREPARED_OWN + 16,
+    PREPARED_BELOW = PREPARED_AREA + PREPARED_AREA_CELLS + 3,
+    PREPARED_NORMAL = PREPARED_BELOW + PREPARED_BELOW_CELLS + 3,
+    PREPARED_TAIL = PREPARED_NORMAL + PREPARED_NORMAL_CELLS + 3
+};
 
 #endif
