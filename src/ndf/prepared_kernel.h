@@ -19,14 +19,15 @@
 #define PREPARED_TINY (ASP_PRECISION == 64 ? R(1e-200) : R(1e-24))
 #endif
 
-/* x in cells, within [0, n] (a NaN counts as 0): the cell as .x, the place in it as .y. */
+/* x in cells, within [0, n] (a NaN counts as 0): the cell as .x, the place in it as .y. By bits: the compilers
+ * would branch on the ends. */
 ASP_FN asp_v2 prepared_cell(asp_real x, int n)
 {
-    asp_real y = x > R(0.0) ? x : R(0.0);
-    asp_real z = y < (asp_real)n ? y : (asp_real)n;
-    asp_real last = (asp_real)(n - 1);
+    asp_real end = (asp_real)n, y = aspi_select(x > R(0.0), x, R(0.0));
+    asp_real z = aspi_select(y < end, y, end);
+    asp_real cell = (asp_real)(int)z;
     asp_v2 out;
-    out.x = (asp_real)(int)(z < last ? z : last);
+    out.x = aspi_select(cell < end, cell, end - R(1.0));
     out.y = z - out.x;
     return out;
 }
@@ -76,7 +77,7 @@ ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
 {
     asp_real h = aspi_abs(w), b = s2 * k->table[PREPARED_SCALE2];
     asp_real above = prepared_far(k, h, b), below = prepared_below(k, h, s2, b);
-    return w < R(0.0) ? below : w + above;
+    return aspi_select(w < R(0.0), below, w + above);
 }
 #endif
 
@@ -91,8 +92,9 @@ ASP_FN asp_real prepared_plain(const asp_shape *k, asp_real e)
 #ifndef PREPARED_OWN_NORMAL
 ASP_FN asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
 {
-    asp_real u = aspi_min(u1, R(1.0) - (ASP_PRECISION == 64 ? R(0x1p-53) : R(0x1p-24)));
-    asp_real r = prepared_plain(k, aspi_max(-aspi_log1p(-u), R(0.0)));
+    asp_real last = R(1.0) - (ASP_PRECISION == 64 ? R(0x1p-53) : R(0x1p-24));
+    asp_real u = aspi_select(u1 > last, last, u1);
+    asp_real r = prepared_plain(k, aspi_abs(aspi_log1p(-u)));
     asp_v2 t = aspi_sincos2pi(u2);
     asp_v3 m;
     m.x = r * t.x;
@@ -125,7 +127,7 @@ ASP_FN asp_real prepared_tail(const asp_shape *k, asp_real h, asp_real b, asp_re
     asp_real x = aspi_sqrt(h), y = aspi_sqrt(aspi_sqrt(b));
     asp_real v = x / aspi_max(x + y, PREPARED_TINY) * R(PREPARED_VIEW_CELLS / PREPARED_VIEW_END);
     asp_real least = R(PREPARED_LEAST);
-    asp_real rho = aspi_max(-aspi_log_near(aspi_max(u, least), -rest), ASP_PRECISION == 64 ? R(1e-30) : R(1e-20));
+    asp_real rho = aspi_abs(aspi_log_near(aspi_max(u, least), -rest)) + (ASP_PRECISION == 64 ? R(1e-30) : R(1e-20));
     asp_real z = aspi_sqrt(aspi_sqrt(rho)) * R(PREPARED_TAIL_CELLS / PREPARED_Z_END);
     asp_real power = R(0.2) + R(2.0 / 15.0) * b / aspi_max(b + R(100.0) * h2, PREPARED_TINY);
     return scale * aspi_exp(power * aspi_log(rho) + prepared_tail_at(k, v, z));
@@ -162,10 +164,13 @@ ASP_FN asp_v2 prepared_turn(asp_real c, asp_real g, asp_real r, asp_real u)
     asp_real target = f * (a * end + sine);
     asp_real phi;
     asp_v2 out;
-    int i;
     phi = end * f * R(0.5);
-    for (i = 0; i < 6; i++)
-        phi = aspi_min(prepared_step(a, b, phi, target), end);
+    phi = aspi_min(prepared_step(a, b, phi, target), end);
+    phi = aspi_min(prepared_step(a, b, phi, target), end);
+    phi = aspi_min(prepared_step(a, b, phi, target), end);
+    phi = aspi_min(prepared_step(a, b, phi, target), end);
+    phi = aspi_min(prepared_step(a, b, phi, target), end);
+    phi = aspi_min(prepared_step(a, b, phi, target), end);
     out = aspi_sincos2pi(phi * R(0.5 / ASP_PI));
     out.y = t < R(0.0) ? -out.y : out.y;
     return out;
@@ -189,14 +194,14 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
     asp_real share = aspi_min(-inner * inv_far, R(1.0));
     asp_real rest = aspi_min((R(1.0) - u1) * sigma * inv_far, R(1.0));
     asp_real left = aspi_max(inner / aspi_max(up, PREPARED_TINY), ASP_PRECISION == 64 ? R(0x1p-53) : R(0x1p-24));
-    asp_real e = aspi_max(-aspi_log(left), R(0.0));
+    asp_real e = aspi_abs(aspi_log(left));
     asp_real plain = prepared_plain(k, e);
     asp_real eta = prepared_tail(k, h, b, share, rest);
     asp_real steep = aspi_sqrt(h * h + eta * eta);
-    asp_real x = inner > R(0.0) ? plain : steep;
-    asp_real z = inner > R(0.0) ? R(1.0) : s;
+    asp_real x = aspi_select(inner > R(0.0), plain, steep);
+    asp_real z = aspi_select(inner > R(0.0), R(1.0), s);
     asp_real g = s * x, cz = c * z;
-    asp_real root = inner > R(0.0) ? aspi_sqrt(aspi_max(g * g - cz * cz, R(0.0))) : s * eta;
+    asp_real root = aspi_select(inner > R(0.0), aspi_sqrt(aspi_max(g * g - cz * cz, R(0.0))), s * eta);
     asp_v2 p = prepared_turn(cz, g, root, u2);
     asp_real inverse = s2 > R(0.0) ? R(1.0) / aspi_sqrt(s2) : R(0.0);
     asp_real ax = s2 > R(0.0) ? v.x * inverse : R(1.0), ay = v.y * inverse;
