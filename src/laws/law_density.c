@@ -21,7 +21,7 @@ static double normal_term(const void *context, double r, int index)
 
 void aspi_law_normalisation(aspi_trial *t)
 {
-    double sum = aspi_radial_integral(normal_term, t);
+    double sum = t->planar ? aspi_planar_mass(t) : aspi_radial_integral(normal_term, t);
     aspi_find(t, fabs(sum - 1), 1e-10, "integral %.15g", sum);
 }
 
@@ -35,7 +35,7 @@ static double slope_term(const void *context, double r, int index)
 
 void aspi_law_slope_density(aspi_trial *t)
 {
-    double sum = aspi_radial_integral(slope_term, t);
+    double sum = t->planar ? aspi_planar_slope_mass(t) : aspi_radial_integral(slope_term, t);
     int i;
     aspi_find(t, fabs(sum - 1), 1e-10, "integral %.15g", sum);
     for (i = 0; i < 1000; i++) {
@@ -62,6 +62,8 @@ static double first_moment(const aspi_trial *t, int axis)
 {
     double sum = 0, size = hypot(t->ndf->map.tx, t->ndf->map.ty);
     int k, i;
+    if (t->planar)
+        return aspi_planar_moment(t, axis) / (size + t->scale * sqrt(t->det));
     for (k = 0; k < 120; k++)
         for (i = 0; i < 8; i++) {
             double r = t->scale * exp(-12 + 0.125 * k), phi = 2 * ASPI_PI * (i + 0.3) / 8;
@@ -116,7 +118,9 @@ void aspi_law_slope_map(aspi_trial *t)
         double qx = r * cos(phi), qy = r * sin(phi);
         asp_vec2 p = aspi_map_slope(&t->ndf->map, qx, qy);
         mapped = asp_P22(t->ndf, p.x, p.y) * t->det;
-        /* the standard surface elsewhere on the same circle: it must be round */
+        /* the standard surface elsewhere on the same circle: it must be round, unless it says that
+         * it is not */
+        other = t->planar ? phi : other;
         standard = asp_P22(&t->standard, r * cos(other), r * sin(other));
         if (standard < 1e-250)
             continue;
@@ -201,6 +205,8 @@ void aspi_law_matrix(aspi_trial *t)
     double tilt = hypot(t->ndf->map.tx, t->ndf->map.ty);
     double narrow = (1 + tilt + five.alpha_x) / five.alpha_y;
     double once = 1 + 0.02 * narrow, twice = once + 0.02 * narrow * narrow;
+    if (t->planar) /* A^T A alone does not tell how a surface that is not round lies in it */
+        return;
     /* D depends on A^T A alone: A is turned from the left, and scaled */
     asp_vec3 a = aspi_random_direction(t), b, c;
     asp_map_to_matrix(&t->ndf->map, B);

@@ -60,15 +60,57 @@ static double record_rounding(const aspi_trial *t, asp_vec3 m)
     return b > 0 ? EPS * log(a / b) / (2 * log(1.0001 / 0.9999)) : 0;
 }
 
+/* Slopes counted in cells: where rounding may carry a slope into the next cell, by how much that
+ * differs. */
+static double cell_rounding(const aspi_trial *t, asp_vec3 m)
+{
+    const asp_ndf *k = t->ndf;
+    double z = fabs(m.z) > 1e-30 ? fabs(m.z) : 1e-30, low, high;
+    double px = -m.x / z, py = -m.y / z, dx = px - k->map.tx, dy = py - k->map.ty;
+    double x = fabs(px) + fabs(k->map.tx), y = fabs(py) + fabs(k->map.ty);
+    aspi_planar_bounds(t, k->i00 * dx + k->i01 * dy, k->i10 * dx + k->i11 * dy,
+                       4 * EPS * (fabs(k->i00) * x + fabs(k->i01) * y),
+                       4 * EPS * (fabs(k->i10) * x + fabs(k->i11) * y), &low, &high);
+    return low == high ? 0 : low > 0 ? (high - low) / low : INFINITY;
+}
+
 static double density_allowance(const aspi_trial *t, asp_vec3 m, double D)
 {
     asp_vec3 top = asp_mean_normal(t->ndf);
     double z4 = m.z * m.z / (top.z * top.z), peak = asp_D(t->ndf, top);
     /* what the standard surface's P22 loses below the least normal number of float32 */
     double lost = 2e-38 * t->ndf->inv_det / (m.z * m.z * m.z * m.z);
+    if (t->planar)
+        return 2e-6 + cell_rounding(t, m);
     /* of the peak in slopes: D = P22/cos^4 grows without bound towards vertical facets */
     return (D * z4 * z4 < 1e-6 * peak ? 1e-4 : 2e-6) + slope_rounding(t, m) + record_rounding(t, m)
          + lost / D;
+}
+
+static double off_range(double found, double low, double high)
+{
+    if (high < 1e-30)
+        return found < 1e-29 ? 0 : INFINITY;
+    return found < low ? (low - found) / low : found > high ? (found - high) / high
+         : found == found ? 0 : NAN;
+}
+
+/* All that is rounded on the way is a height above the farthest cell. */
+static double planar_sigma_deviation(const aspi_trial *t, asp_vec3 w, double found)
+{
+    const asp_map *map = &t->ndf->map;
+    const asp_lattice *l = &t->lattice;
+    double far_x = fmax(fabs(l->x0), fabs(l->x0 + l->dx * (double)l->nx));
+    double far_y = fmax(fabs(l->y0), fabs(l->y0 + l->dy * (double)l->ny)), step, low, high;
+    asp_vec3 v = aspi_standard_vector(t->ndf, w);
+    step = EPS * (fabs(w.z) + fabs(map->tx * w.x) + fabs(map->ty * w.y)
+                  + far_x * (fabs(map->m00 * w.x) + fabs(map->m10 * w.y))
+                  + far_y * (fabs(map->m01 * w.x) + fabs(map->m11 * w.y)));
+    v.z -= step;
+    low = asp_sigma(&t->standard, v);
+    v.z += 2 * step;
+    high = asp_sigma(&t->standard, v);
+    return off_range(found, low, high);
 }
 
 /* Relative distance of x from the interval that the roundings of the view's height and length span. */
@@ -77,6 +119,8 @@ static double sigma_deviation(const aspi_trial *t, asp_vec3 w, double found)
     const asp_map *map = &t->ndf->map;
     double h, s, step, lost, low, high;
     asp_vec3 v = { 0, 0, 0 };
+    if (t->planar)
+        return planar_sigma_deviation(t, w, found);
     aspi_standard_view(t->ndf, w, &h, &s);
     step = EPS * (fabs(w.z) + fabs(map->tx * w.x) + fabs(map->ty * w.y));
     if (!t->skewed)
@@ -90,10 +134,17 @@ static double sigma_deviation(const aspi_trial *t, asp_vec3 w, double found)
     v.x = s + lost;
     v.z = h + step;
     high = asp_sigma(&t->standard, v);
-    if (high < 1e-30)
-        return found < 1e-29 ? 0 : INFINITY;
-    return found < low ? (low - found) / low : found > high ? (found - high) / high
-         : found == found ? 0 : NAN;
+    return off_range(found, low, high);
+}
+
+/* What the height of a view above the mean slope, or above the farthest cell, loses. */
+static double height_lost(const aspi_trial *t)
+{
+    const asp_map *map = &t->ndf->map;
+    double tilt = hypot(map->tx, map->ty), far = 0;
+    if (t->planar) /* scale is an eighth of the cells' diagonal */
+        far = 8 * t->scale * hypot(hypot(map->m00, map->m01), hypot(map->m10, map->m11));
+    return t->skewed || t->planar ? 4 * EPS * (1 + tilt + far) : 0;
 }
 
 static void compare_facets(aspi_trial *t)
@@ -110,7 +161,8 @@ static void compare_facets(aspi_trial *t)
             aspi_find(t, fabs(found - D) / D, density_allowance(t, m, D),
                       "D, m = (%.7g, %.7g, %.7g): %.9g, float64 %.9g", m.x, m.y, m.z, found, D);
         else
-            aspi_find(t, found, 2e-30, "D, m = (%.7g, %.7g, %.7g): not gone", m.x, m.y, m.z);
+            aspi_find(t, found, t->planar && cell_rounding(t, m) > 0 ? INFINITY : 2e-30,
+                      "D, m = (%.7g, %.7g, %.7g): not gone", m.x, m.y, m.z);
         if (D * m.z > 1e-30)
             aspi_find(t, fabs(pdf - D * m.z) / (D * m.z), density_allowance(t, m, D),
                       "pdf_normal, m = (%.7g, %.7g, %.7g)", m.x, m.y, m.z);
@@ -154,8 +206,7 @@ static void compare_views(aspi_trial *t)
         for (k = 0; k < 2; k++) {
             int mask = k ? ASP_MASK_WALL : 0;
             double G1 = asp_G1(t->ndf, w, mask), other = asp_G1f(&t->ndff, wf, mask);
-            double lost = t->skewed ? 4 * EPS * (1 + hypot(t->ndf->map.tx, t->ndf->map.ty))
-                        / asp_sigma(t->ndf, w) : 0;
+            double lost = height_lost(t) / asp_sigma(t->ndf, w);
             aspi_find(t, fabs(other - G1) / G1, rounding + fmin(lost, 1),
                       "G1%s, w = (%.7g, %.7g, %.7g): %.9g, float64 %.9g", k ? " wall" : "", w.x,
                       w.y, w.z, other, G1);
@@ -174,8 +225,7 @@ static void compare_visible(aspi_trial *t)
         double c = aspi_dot(w, m), sigma = asp_sigma(t->ndf, w), lost;
         if (!(pdf > 1e-30 && pdf < 1e37 && sigma > 1e-12 && m.z > 2e-9))
             continue;
-        lost = 2 * EPS / c + (t->skewed ? 4 * EPS * (1 + hypot(t->ndf->map.tx, t->ndf->map.ty))
-               / sigma : 0);
+        lost = 2 * EPS / c + height_lost(t) / sigma;
         aspi_find(t, fabs(found - pdf) / pdf, density_allowance(t, m, asp_D(t->ndf, m))
                   + fmin(lost, 1) + (sigma < 1e-6 * t->scale ? 1e-4 : 0),
                   "pdf_visible, %s, m = (%.7g, %.7g, %.7g): %.9g, float64 %.9g",

@@ -19,9 +19,11 @@ static asp_vec3 minus(asp_vec3 w)
 }
 
 /* w.z - t.w_xy is a difference: its rounding is a step of this size in the height of w'. */
-static double height_step(const asp_ndf *k, asp_vec3 w)
+static double height_step(const aspi_trial *t, asp_vec3 w)
 {
-    return 2.3e-16 * (fabs(w.z) + fabs(k->map.tx * w.x) + fabs(k->map.ty * w.y));
+    const asp_ndf *k = t->ndf;
+    return 2.3e-16 * (fabs(w.z) + fabs(k->map.tx * w.x) + fabs(k->map.ty * w.y))
+         + aspi_lattice_step(t, w);
 }
 
 /* How far x lies outside [low, high], relative to the nearer end. */
@@ -38,15 +40,15 @@ static double outside(double x, double low, double high)
 
 static void sigma_at(aspi_trial *t, asp_vec3 w, const char *name)
 {
-    double h, s, step = height_step(t->ndf, w), found = asp_sigma(t->ndf, w), exact, low, high;
+    double h, s, step = height_step(t, w), found = asp_sigma(t->ndf, w), exact, low, high;
     aspi_standard_view(t->ndf, w, &h, &s);
-    exact = aspi_sigma_by_quadrature(t, h, s);
+    exact = aspi_sigma_expected(t, w, 0);
     low = high = exact;
     /* far below the mean plane sigma is the tail of the distribution, where a rounding of the
      * height costs digits that nobody can save: any value between is right */
     if (h < 0 && step > 1e-14 * fabs(h) / (1 + h * h / (s * s))) {
-        low = aspi_sigma_by_quadrature(t, h - step, s);
-        high = aspi_sigma_by_quadrature(t, h + step, s);
+        low = aspi_sigma_expected(t, w, -step);
+        high = aspi_sigma_expected(t, w, step);
     }
     if (exact > 1e-280) /* below, D itself is gone */
         aspi_find(t, outside(found, low, high), 1e-10,
@@ -83,7 +85,7 @@ void aspi_law_sigma_flip(aspi_trial *t)
         down = asp_sigma(t->ndf, minus(w));
         aspi_standard_view(t->ndf, w, &h, &s);
         aspi_find(t, fabs((up - down) - h) / fmax(fmax(up, down), fabs(h)),
-                  2e-15 + 2 * height_step(t->ndf, w) / fmax(up, down),
+                  2e-15 + 2 * height_step(t, w) / fmax(up, down),
                   "w = (%.9g, %.9g, %.9g): %.17g up, %.17g down", w.x, w.y, w.z, up, down);
         aspi_find(t, up < 0 || down < 0, 0, "w = (%.9g, %.9g, %.9g): negative", w.x, w.y, w.z);
     }
@@ -104,10 +106,10 @@ static void G1_value(aspi_trial *t, asp_vec3 w, int k)
     expected = mask & ASP_MASK_WALL ? w.z / (area + wall_facing(t->ndf, w))
                                     : fmin(1, w.z / area);
     aspi_find(t, fabs(G1 - expected) / expected,
-              4e-15 + (mask & ASP_MASK_WALL ? 4 * height_step(t->ndf, w) / area : 0),
+              4e-15 + (mask & ASP_MASK_WALL ? 4 * height_step(t, w) / area : 0),
               "%s w = (%.9g, %.9g, %.9g): G1 %.17g, from sigma %.17g", smith_name[k], w.x, w.y,
               w.z, G1, expected);
-    aspi_find(t, fabs(G1 * (1 + lambda) - 1), 4e-15 + 4 * height_step(t->ndf, w) / area,
+    aspi_find(t, fabs(G1 * (1 + lambda) - 1), 4e-15 + 4 * height_step(t, w) / area,
               "%s w = (%.9g, %.9g, %.9g): G1 (1 + Lambda)", smith_name[k], w.x, w.y, w.z);
     aspi_find(t, !(G1 >= 0 && G1 <= 1 && lambda >= 0), 0,
               "%s w = (%.9g, %.9g, %.9g): G1 %.17g, Lambda %.17g out of range", smith_name[k],
@@ -133,7 +135,7 @@ void aspi_law_G1(aspi_trial *t)
                 double cot = exp(8 - 0.08 * i);
                 asp_vec3 w = aspi_unit(cos(phi), sin(phi), cot);
                 double G1 = asp_G1(t->ndf, w, smith[k]);
-                aspi_find(t, (G1 - last) / last, 2e-15 + 4 * height_step(t->ndf, w)
+                aspi_find(t, (G1 - last) / last, 2e-15 + 4 * height_step(t, w)
                           / asp_sigma(t->ndf, w),
                           "%s rises with the angle at phi %.6g, cot(theta) %.6g",
                           smith_name[k], phi, cot);
@@ -164,14 +166,14 @@ void aspi_law_wall(aspi_trial *t)
         /* facets and the walls that close the surface, seen from both sides: no area is lost */
         front = asp_sigma(t->ndf, w) + wall_facing(t->ndf, w);
         back = asp_sigma(t->ndf, other) + wall_facing(t->ndf, other);
-        aspi_find(t, fabs((front - back) - w.z), 4e-16 * front + 4 * height_step(t->ndf, w),
+        aspi_find(t, fabs((front - back) - w.z), 4e-16 * front + 4 * height_step(t, w),
                   "w = (%.9g, %.9g, %.9g): front %.17g, back %.17g", w.x, w.y, w.z, front, back);
         aspi_standard_view(t->ndf, w, &h, &G1);
         if (i < 6) {
             /* the weak white furnace: what G1 leaves of the area is the pixel it came from */
-            double area = aspi_sigma_by_quadrature(t, h, G1) + wall_facing(t->ndf, w);
+            double area = aspi_sigma_expected(t, w, 0) + wall_facing(t->ndf, w);
             G1 = asp_G1(t->ndf, w, ASP_MASK_WALL);
-            aspi_find(t, fabs(G1 * area - w.z), 1e-10 * w.z + 4 * height_step(t->ndf, w),
+            aspi_find(t, fabs(G1 * area - w.z), 1e-10 * w.z + 4 * height_step(t, w),
                       "w = (%.9g, %.9g, %.9g): G1 times the area by quadrature, %.15g", w.x, w.y,
                       w.z, G1 * area);
         }
@@ -213,8 +215,8 @@ void aspi_law_G2(aspi_trial *t)
             else {
                 double lambda = asp_lambda(t->ndf, wi, smith[k]) + asp_lambda(t->ndf, wo, smith[k]);
                 aspi_find(t, fabs(G2 * (1 + lambda) - 1),
-                          2e-14 + 8 * (height_step(t->ndf, wi) / wi.z
-                          + height_step(t->ndf, wo) / wo.z),
+                          2e-14 + 8 * (height_step(t, wi) / wi.z
+                          + height_step(t, wo) / wo.z),
                           "%s is not 1/(1 + Lambda_i + Lambda_o), wi.z %.6g, wo.z %.6g",
                           smith_name[k], wi.z, wo.z);
             }
@@ -282,6 +284,8 @@ static double visible_integral(const aspi_trial *t, asp_vec3 w)
     visible_plane v;
     double h, s, mu, sum = 0, last = 0, before = 0, end;
     int i;
+    if (t->planar)
+        return aspi_planar_visible(t, w);
     aspi_standard_view(t->ndf, w, &h, &s);
     v.t = t;
     v.w = w;

@@ -219,6 +219,10 @@ static void prepare_trial(aspi_trial *t, const asp_ndf *ndf)
     t->det = fabs(ndf->map.m00 * ndf->map.m11 - ndf->map.m01 * ndf->map.m10);
     t->skewed = ndf->map.tx != 0 || ndf->map.ty != 0;
     aspi_standard_polar(ndf, asp_sample_normal(ndf, 0.5, 0.25), &t->scale, &phi);
+    t->planar = ndf->model->lattice && ndf->model->lattice(ndf, &t->lattice);
+    if (t->planar) /* no slope stands for the others: an eighth of the rectangle's diagonal */
+        t->scale = 0.125 * hypot(t->lattice.dx * (double)t->lattice.nx,
+                                 t->lattice.dy * (double)t->lattice.ny);
     if (!(t->scale > 0 && t->scale < 1e30)) /* a broken sampler; its law will say so */
         t->scale = 1;
     choose_views(t);

@@ -21,6 +21,8 @@ typedef struct aspi_trial {
     double det;                   /* |det M| */
     double scale;                 /* median slope of the standard surface */
     int skewed;
+    int planar;                   /* the slopes are counted in cells, not round */
+    asp_lattice lattice;          /* of those, in the standard frame */
     size_t samples;
     uint64_t state;               /* of the generator, reset for each law */
     aspi_view views[ASPI_VIEWS];  /* above the horizon, from the normal to grazing */
@@ -118,6 +120,9 @@ double aspi_sidak(double p, size_t tests);
 typedef struct aspi_histogram {
     double edge[ASPI_RINGS - 1];                 /* outer radius of each ring but the last */
     double phi0;
+    int planar;                                  /* cells are blocks of half the lattice's cells */
+    asp_lattice lattice;
+    int block_x, block_y, blocks_x;
     double count[ASPI_CELLS], sum[ASPI_CELLS], sum2[ASPI_CELLS];
     double carried[ASPI_CELLS];                  /* samples whose weight is not 0 */
     double density[ASPI_CELLS], value[ASPI_CELLS];  /* integrals of a density and of another value */
@@ -127,6 +132,8 @@ typedef struct aspi_histogram {
 typedef void aspi_facet_function(const void *context, asp_vec3 m, double *density, double *value);
 
 void aspi_histogram_edges(aspi_histogram *h, double *radii, size_t count, double phi0);
+/* The same for a surface counted in cells: blocks of half cells, their edges inside the lattice's. */
+void aspi_histogram_blocks(aspi_histogram *h, const asp_lattice *lattice);
 void aspi_histogram_add(aspi_histogram *h, const asp_ndf *ndf, asp_vec3 m, double weight);
 void aspi_histogram_integrate(aspi_histogram *h, const aspi_trial *t, aspi_facet_function *f,
                               const void *context);
@@ -146,6 +153,28 @@ double aspi_radial_integral(aspi_radial_function *f, const void *context);
 
 /* sigma of a view of height w and horizontal length s in the standard frame, from D alone. */
 double aspi_sigma_by_quadrature(const aspi_trial *t, double w, double s);
+
+/* sigma(w) by quadrature, with the height of w' raised a little. */
+double aspi_sigma_expected(const aspi_trial *t, asp_vec3 w, double raise);
+
+/* ---- surfaces counted in cells (planar.c) */
+
+/* w' = (M^T w_xy, w.z - w_xy.t). */
+asp_vec3 aspi_standard_vector(const asp_ndf *ndf, asp_vec3 w);
+/* Rounding of the height of w' over the farthest corner of the cells; 0 for a round surface. */
+double aspi_lattice_step(const aspi_trial *t, asp_vec3 w);
+/* Integral over the cells of a function that is linear within each, where v sees it: where
+ * v.z - v.x x - v.y y > 0. */
+typedef double aspi_planar_function(const void *context, double x, double y);
+double aspi_planar_integral(const aspi_trial *t, asp_vec3 v, aspi_planar_function *f,
+                            const void *context);
+double aspi_planar_density(const aspi_trial *t, double x, double y);   /* of standard slopes, from D */
+double aspi_planar_mass(const aspi_trial *t);
+double aspi_planar_slope_mass(const aspi_trial *t);
+double aspi_planar_moment(const aspi_trial *t, int axis);
+double aspi_planar_visible(const aspi_trial *t, asp_vec3 w);
+void aspi_planar_bounds(const aspi_trial *t, double x, double y, double lost_x, double lost_y,
+                        double *low, double *high);
 
 /* Directional albedo of the first channel, integral of eval_cos over wo, by adaptive cubature in
  * the slope plane; wi.z > 0. tolerance is absolute, and of the estimated error, which is usually

@@ -128,6 +128,8 @@ typedef struct cubature {
     asp_vec2 origin;       /* where the rays start */
     double scale, det, c;  /* c = |origin - centre|^2 - radius^2, negative inside */
     double node[ORDER], weight[ORDER];
+    int order, planar;     /* planar: u and phi are slopes x and y, within the lattice's cells */
+    asp_lattice lattice;
 } cubature;
 
 /* sinh^-1 of the length of the ray at phi, in units of the scale. */
@@ -148,34 +150,36 @@ static double cell_integral(const cubature *q, double u0, double u1, double phi0
     asp_rgbs f;
     const asp_map *map = &q->mat->ndf.map;
     int i, j;
-    for (i = 0; i < ORDER; i++) {
+    for (i = 0; i < q->order; i++) {
         double phi = phi0 + (phi1 - phi0) * q->node[i];
         double cx = cos(phi), cy = sin(phi);
         double ex = map->m00 * cx + map->m01 * cy, ey = map->m10 * cx + map->m11 * cy;
-        double length = ray_length(q, ex, ey);
-        for (j = 0; j < ORDER; j++) {
-            double v = 1 - (u0 + (u1 - u0) * q->node[j]);
+        double length = q->planar ? 0 : ray_length(q, ex, ey);
+        for (j = 0; j < q->order; j++) {
+            double at = u0 + (u1 - u0) * q->node[j], v = 1 - at;
             double x = (1 - v * v * v) * length, r = q->scale * sinh(x);
-            double px = q->origin.x + r * ex, py = q->origin.y + r * ey;
+            asp_vec2 p = aspi_map_slope(map, at, phi);
+            double px = q->planar ? p.x : q->origin.x + r * ex;
+            double py = q->planar ? p.y : q->origin.y + r * ey;
             double mz = 1 / sqrt(1 + px * px + py * py);
             double cosine = mz * (q->wi.z - px * q->wi.x - py * q->wi.y);
-            int k = i * ORDER + j;
+            int k = i * q->order + j;
             wox[k] = -2 * cosine * mz * px - q->wi.x;
             woy[k] = -2 * cosine * mz * py - q->wi.y;
             woz[k] = 2 * cosine * mz - q->wi.z;
             wix[k] = q->wi.x;
             wiy[k] = q->wi.y;
             wiz[k] = q->wi.z;
-            jac[k] = 4 * cosine * mz * mz * mz * q->det * r * q->scale * cosh(x) * length * 3 * v * v
-                   * q->weight[i] * q->weight[j];
+            jac[k] = 4 * cosine * mz * mz * mz * q->det * q->weight[i] * q->weight[j]
+                   * (q->planar ? 1 : r * q->scale * cosh(x) * length * 3 * v * v);
         }
     }
     in.x = wix; in.y = wiy; in.z = wiz;
     out.x = wox; out.y = woy; out.z = woz;
     f.r = red; f.g = green; f.b = blue;
-    asp_eval_cos_n(q->mat, NODES, in, out, f);
-    for (i = 0; i < NODES; i++)
-        sum += red[i] * jac[i];
+    asp_eval_cos_n(q->mat, (size_t)(q->order * q->order), in, out, f);
+    for (i = 0; i < q->order * q->order; i++) /* behind the facet there is no reflection */
+        sum += jac[i] > 0 ? red[i] * jac[i] : 0;
     return sum * (u1 - u0) * (phi1 - phi0);
 }
 
@@ -258,33 +262,49 @@ static void prepare_cubature(cubature *q, const asp_material *mat, asp_vec3 wi, 
         q->scale = 1;
     if (!(*phi_start == *phi_start))
         *phi_start = 0;
-    aspi_gauss(ORDER, q->node, q->weight);
+    q->planar = mat->ndf.model->lattice && mat->ndf.model->lattice(&mat->ndf, &q->lattice);
+    q->order = q->planar ? 2 : ORDER;
+    aspi_gauss(q->order, q->node, q->weight);
     choose_origin(q);
+}
+
+/* The cells to begin with: number i of them, or 0 past the last. */
+static int first_cell(const cubature *q, double phi_start, int i, double edges[4])
+{
+    const asp_lattice *l = &q->lattice;
+    int nx = q->planar ? (int)l->nx : 4, ny = q->planar ? (int)l->ny : SECTORS;
+    int at_x = i % nx, at_y = i / nx;
+    if (at_y >= ny)
+        return 0;
+    edges[0] = q->planar ? l->x0 + l->dx * at_x : at_x / 4.0;
+    edges[1] = q->planar ? l->x0 + l->dx * (at_x + 1) : (at_x + 1) / 4.0;
+    edges[2] = q->planar ? l->y0 + l->dy * at_y : phi_start + 2 * ASPI_PI * at_y / SECTORS;
+    edges[3] = q->planar ? l->y0 + l->dy * (at_y + 1) : phi_start + 2 * ASPI_PI * (at_y + 1) / SECTORS;
+    return 1;
 }
 
 double aspi_albedo(const asp_material *mat, asp_vec3 wi, double tolerance, double *error)
 {
-    enum { MOST = 4000 };
-    cell *heap = (cell *)malloc(MOST * sizeof *heap);
+    cell *heap;
     cubature q;
-    double total = 0, doubt = 0, phi_start;
-    int count = 0, i, j;
+    double total = 0, doubt = 0, phi_start, edge[4];
+    int count = 0, most = 4000, i;
+    prepare_cubature(&q, mat, wi, &phi_start);
+    if (q.planar)
+        most += (int)(q.lattice.nx * q.lattice.ny);
+    heap = (cell *)malloc((size_t)most * sizeof *heap);
     if (!heap) {
         if (error)
             *error = INFINITY;
         return NAN;
     }
-    prepare_cubature(&q, mat, wi, &phi_start);
-    for (i = 0; i < SECTORS; i++)
-        for (j = 0; j < 4; j++) {
-            double phi0 = phi_start + 2 * ASPI_PI * i / SECTORS;
-            double phi1 = phi_start + 2 * ASPI_PI * (i + 1) / SECTORS;
-            double whole = cell_integral(&q, j / 4.0, (j + 1) / 4.0, phi0, phi1);
-            cell c = make_cell(&q, j / 4.0, (j + 1) / 4.0, phi0, phi1, whole);
-            doubt += c.change;
-            push(heap, &count, c);
-        }
-    while (doubt > tolerance && count + 4 <= MOST) {
+    for (i = 0; first_cell(&q, phi_start, i, edge); i++) {
+        double whole = cell_integral(&q, edge[0], edge[1], edge[2], edge[3]);
+        cell c = make_cell(&q, edge[0], edge[1], edge[2], edge[3], whole);
+        doubt += c.change;
+        push(heap, &count, c);
+    }
+    while (doubt > tolerance && count + 4 <= most) {
         cell c = pop(heap, &count);
         double um = 0.5 * (c.u0 + c.u1), pm = 0.5 * (c.phi0 + c.phi1);
         doubt -= c.change;

@@ -103,10 +103,35 @@ void aspi_histogram_edges(aspi_histogram *h, double *radii, size_t count, double
     }
 }
 
+void aspi_histogram_blocks(aspi_histogram *h, const asp_lattice *lattice)
+{
+    int nx = 2 * (int)lattice->nx, ny = 2 * (int)lattice->ny;
+    h->planar = 1;
+    h->lattice = *lattice;
+    h->block_x = (nx + ASPI_RINGS - 3) / (ASPI_RINGS - 2);
+    h->block_y = (ny + ASPI_SECTORS - 2) / (ASPI_SECTORS - 1);
+    /* odd blocks have their edges within cells, where a wrong share of a cell shows */
+    h->block_x += h->block_x % 2 == 0;
+    h->block_y += h->block_y % 2 == 0;
+    h->blocks_x = (nx - 1) / h->block_x + 1;
+}
+
+/* The block of half cell (i, j). */
+static int block_of(const aspi_histogram *h, double i, double j)
+{
+    if (!(i >= 0 && j >= 0 && i < 2.0 * (double)h->lattice.nx && j < 2.0 * (double)h->lattice.ny))
+        return ASPI_CELLS - 1;
+    return (int)j / h->block_y * h->blocks_x + (int)i / h->block_x;
+}
+
 static int cell_of(const aspi_histogram *h, double r, double phi)
 {
     int ring = 0, sector;
     double turn;
+    if (h->planar)
+        return r < 1e60 ? block_of(h, 2 * (r * cos(phi) - h->lattice.x0) / h->lattice.dx,
+                                   2 * (r * sin(phi) - h->lattice.y0) / h->lattice.dy)
+                        : ASPI_CELLS - 1;
     while (ring < ASPI_RINGS - 1 && !(r < h->edge[ring]))
         ring++;
     if (ring == ASPI_RINGS - 1)
@@ -142,17 +167,19 @@ typedef struct integrand {
     aspi_facet_function *f;
     const void *context;
     double node[RULE], weight[RULE], tolerance;
+    int order, planar;        /* planar: s and phi of a rectangle are x and y */
 } integrand;
 
 static void apply_rule(const integrand *q, rectangle *a)
 {
     int i, j;
     a->density = a->value = 0;
-    for (i = 0; i < RULE; i++) {
+    for (i = 0; i < q->order; i++) {
         double phi = a->phi0 + (a->phi1 - a->phi0) * q->node[i], cx = cos(phi), cy = sin(phi);
-        for (j = 0; j < RULE; j++) {
-            double r = exp(a->s0 + (a->s1 - a->s0) * q->node[j]), d, v, jacobian;
-            asp_vec2 p = aspi_map_slope(&q->t->ndf->map, r * cx, r * cy);
+        for (j = 0; j < q->order; j++) {
+            double s = a->s0 + (a->s1 - a->s0) * q->node[j], r = q->planar ? 1 : exp(s), d, v, jacobian;
+            asp_vec2 p = q->planar ? aspi_map_slope(&q->t->ndf->map, s, phi)
+                                   : aspi_map_slope(&q->t->ndf->map, r * cx, r * cy);
             asp_vec3 m = aspi_unit(-p.x, -p.y, 1);
             q->f(q->context, m, &d, &v);
             jacobian = (m.z * r) * (m.z * r) * m.z * q->weight[i] * q->weight[j];
@@ -191,6 +218,29 @@ static void integrate(const integrand *q, rectangle *a, int depth)
     a->value = value;
 }
 
+/* Half cells one by one: within a whole cell a visible density is linear. */
+static double integrate_blocks(aspi_histogram *h, const integrand *q)
+{
+    const asp_lattice *l = &h->lattice;
+    double inner = 0;
+    int i, j;
+    for (j = 0; j < 2 * (int)l->ny; j++)
+        for (i = 0; i < 2 * (int)l->nx; i++) {
+            rectangle a;
+            int block = block_of(h, i, j);
+            a.s0 = l->x0 + 0.5 * l->dx * i;
+            a.s1 = l->x0 + 0.5 * l->dx * (i + 1);
+            a.phi0 = l->y0 + 0.5 * l->dy * j;
+            a.phi1 = l->y0 + 0.5 * l->dy * (j + 1);
+            apply_rule(q, &a);
+            integrate(q, &a, 8);
+            h->density[block] += a.density;
+            h->value[block] += a.value;
+            inner += a.density;
+        }
+    return inner;
+}
+
 void aspi_histogram_integrate(aspi_histogram *h, const aspi_trial *t, aspi_facet_function *f,
                               const void *context)
 {
@@ -201,8 +251,12 @@ void aspi_histogram_integrate(aspi_histogram *h, const aspi_trial *t, aspi_facet
     q.f = f;
     q.context = context;
     q.tolerance = 0.02 / (double)t->samples; /* a fiftieth of a sample */
-    aspi_gauss(RULE, q.node, q.weight);
-    for (ring = 0; ring < ASPI_RINGS - 1; ring++) {
+    q.planar = h->planar;
+    q.order = h->planar ? 2 : RULE;
+    aspi_gauss(q.order, q.node, q.weight);
+    if (h->planar)
+        inner = integrate_blocks(h, &q);
+    for (ring = 0; !h->planar && ring < ASPI_RINGS - 1; ring++) {
         /* the innermost ring reaches down to where an area is nothing, by panels that double: all
          * that is seen from far below the mean plane lies at its rim */
         double s1 = log(h->edge[ring]), s0 = ring ? log(h->edge[ring - 1]) : s1 - 16;
