@@ -172,6 +172,21 @@ asp_status asp_ndf_make_data(const asp_model *model, const asp_map *map, const d
 asp_status asp_ndf_parse(const asp_model *const *models, const char *spec, asp_ndf *out,
                          asp_error *err);
 
+/* Slopes as they were counted: nx x ny cells over a rectangle of slopes, row-major, ny rows of nx (x runs
+ * fastest), P22 constant in each and 0 outside. values: not negative, in any unit (they are normalised).
+ * sigma and the samplers integrate this very P22 in closed form, in a time that grows with the rows
+ * (1024 at most each way), not with the cells.
+ *
+ * Prepared numbers go to `memory`, which is the caller's: asp_histogram_bytes(nx, ny) bytes (0: a size
+ * that is refused), aligned as malloc aligns, about 72 per cell. It must stay as it is for as long as the
+ * value, its copies and its narrowed form are used. Rows and columns at the border that hold nothing are
+ * dropped. `map` (NULL: none) bends the measured slopes further; their mean becomes the map's. ASP_EINVAL:
+ * of a value, err->position is its index. */
+typedef struct asp_slope_range { double low_x, high_x, low_y, high_y; } asp_slope_range;
+size_t asp_histogram_bytes(size_t nx, size_t ny);
+asp_status asp_histogram_make(void *memory, size_t nx, size_t ny, asp_slope_range range,
+                              const double *values, const asp_map *map, asp_ndf *out, asp_error *err);
+
 /* ------------------------------------------------------------------ 5  Facets */
 
 /* Which masking. Add one of the first group and one of the second. Default: 0. */

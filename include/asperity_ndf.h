@@ -127,6 +127,9 @@ typedef enum asp_map_keys {
     ASP_KEYS_ELLIPSOID    /* alpha_x alpha_y theta_x theta_y theta_z | a11..a33 | s11..s33 */
 } asp_map_keys;
 
+/* Slopes counted in cells: where they lie among the standard slopes, whose mean is 0. */
+typedef struct asp_lattice { size_t nx, ny; double x0, y0, dx, dy; } asp_lattice;
+
 struct asp_model {
     const char *name;
     const char *alias;            /* a second name, or NULL */
@@ -145,6 +148,9 @@ struct asp_model {
     asp_status (*prepare)(asp_ndf *out, asp_error *err);
     asp_ndf_ops  f64;
     asp_ndf_opsf f32;
+    /* Fills *out and returns 1 where P22 is constant within the cells of a lattice and jumps between
+     * them, which laws and quadratures have to know; NULL: it never does. */
+    int (*lattice)(const asp_ndf *ndf, asp_lattice *out);
 };
 
 /* For `prepare`: the standard surface is `by` times as rough as its formulas say. */
@@ -159,7 +165,8 @@ void asp_ndf_stretch(asp_ndf *out, double by);
 
 #define ASP_NDF_OPS_(n, s) { n##density_1##s, n##sigma_1##s, n##visible_1##s, n##normal_1##s, n##reflect_1##s, \
     n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s }
-#define ASP_NDF_OPS(n) ASP_NDF_OPS_(n##_, _64), ASP_NDF_OPS_(n##_, _32)
+#define ASP_NDF_OPS_LATTICE(n, lattice) ASP_NDF_OPS_(n##_, _64), ASP_NDF_OPS_(n##_, _32), lattice
+#define ASP_NDF_OPS(n) ASP_NDF_OPS_LATTICE(n, NULL)
 
 #ifdef __cplusplus
 }

@@ -44,6 +44,12 @@
 #undef ASP_PRECISION
 #include "ndf/ggx.c"
 #undef ASP_PRECISION
+#include "ndf/histogram.c"
+#undef ASP_PRECISION
+#include "ndf/histogram_make.c"
+#undef ASP_PRECISION
+#include "ndf/histogram_rows.c"
+#undef ASP_PRECISION
 #include "ndf/prepared.c"
 #undef ASP_PRECISION
 #include "ndf/student_forms.c"

@@ -27,6 +27,7 @@ static int histogram_lattice(const asp_ndf *ndf, asp_lattice *out)
     return 1;
 }
 
+#define ASP_SCALAR_LOOPS        /* of the batches; what runs in vectors is a view's rows */
 #define ASP_NDF histogram
 #define ASP_NDF_PLANAR
 #define ASP_PRECISION 64

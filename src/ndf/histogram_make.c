@@ -6,25 +6,36 @@
 
 extern const asp_model asp_model_histogram;
 
-static int side_ok(size_t n) { return n >= 1 && n <= ASPI_HISTOGRAM_SIDE; }
+static int cells_side_ok(size_t n) { return n >= 1 && n <= ASPI_HISTOGRAM_SIDE; }
 
 size_t asp_histogram_bytes(size_t nx, size_t ny)
 {
     aspi_cells k;
-    if (!side_ok(nx) || !side_ok(ny))
+    if (!cells_side_ok(nx) || !cells_side_ok(ny))
         return 0;
     k.nx = (int)nx;
     k.ny = (int)ny;
     return sizeof k + aspi_cells_numbers(&k) * sizeof(double);
 }
 
-/* The rows and columns that hold anything, and the largest value. */
-typedef struct part { size_t x0, x1, y0, y1; double largest, sum; } part;
+/* A sum that keeps what it rounds away (Kahan 1965): the true sum is value - lost. */
+typedef struct cells_sum { double value, lost; } cells_sum;
 
-static asp_status used_part(size_t nx, size_t ny, const double *values, part *out, asp_error *err)
+static void cells_add(cells_sum *s, double x)
+{
+    double y = x - s->lost, next = s->value + y;
+    s->lost = (next - s->value) - y;
+    s->value = next;
+}
+
+/* The rows and columns that hold anything, and the largest value. */
+typedef struct cells_part { size_t x0, x1, y0, y1; double largest, sum; } cells_part;
+
+static asp_status cells_used(size_t nx, size_t ny, const double *values, cells_part *out, asp_error *err)
 {
     size_t i, j;
-    part p = { 0, 0, 0, 0, 0.0, 0.0 };
+    cells_part p = { 0, 0, 0, 0, 0.0, 0.0 };
+    cells_sum all = { 0.0, 0.0 };
     p.x0 = nx;
     p.y0 = ny;
     for (j = 0; j < ny; j++)
@@ -48,43 +59,45 @@ static asp_status used_part(size_t nx, size_t ny, const double *values, part *ou
         return asp_fail(err, ASP_EINVAL, "values", "all cells are empty");
     for (j = p.y0; j < p.y1; j++)
         for (i = p.x0; i < p.x1; i++)
-            p.sum += values[j * nx + i] / p.largest;
+            cells_add(&all, values[j * nx + i] / p.largest);
+    p.sum = all.value;
     *out = p;
     return ASP_OK;
 }
 
 /* One row of pairs (A, C); masses of the row's cells stand `step` apart, from `cell` on. */
-static void fill_row(double *row, const double *cell, ptrdiff_t step, int cols, double area)
+static void cells_fill_row(double *row, const double *cell, ptrdiff_t step, int cols, double area)
 {
-    double before = 0.0, moment = 0.0;
+    cells_sum before = { 0.0, 0.0 }, moment = { 0.0, 0.0 };
     int i;
     row[0] = row[1] = 0.0;
     for (i = 0; i <= cols; i++) {
         double q = i < cols ? cell[i * step] * area : 0.0;
-        row[2 + 2 * i] = before;
-        row[3 + 2 * i] = moment;
-        moment += before + 0.5 * q;
-        before += q;
+        row[2 + 2 * i] = before.value;
+        row[3 + 2 * i] = moment.value;
+        cells_add(&moment, before.value);
+        cells_add(&moment, 0.5 * q - before.lost);
+        cells_add(&before, q);
     }
-    row[2 + 2 * i] = before;
-    row[3 + 2 * i] = moment;
+    row[2 + 2 * i] = before.value;
+    row[3 + 2 * i] = moment.value;
 }
 
-static void fill_tables(aspi_cells *k, double *numbers)
+static void cells_fill_tables(aspi_cells *k, double *numbers)
 {
     const double *density = numbers + aspi_cells_density(k);
     double *below = numbers + aspi_cells_below(k), area = k->dx * k->dy;
     ptrdiff_t nx = k->nx, ny = k->ny, i, j;
     for (j = 0; j < ny; j++) {
         size_t at = (size_t)j * aspi_cells_stride(k, ASPI_FROM_LEFT);
-        fill_row(numbers + aspi_cells_place(k, ASPI_FROM_LEFT) + at, density + j * nx, 1, k->nx, area);
-        fill_row(numbers + aspi_cells_place(k, ASPI_FROM_RIGHT) + at, density + j * nx + nx - 1, -1,
+        cells_fill_row(numbers + aspi_cells_place(k, ASPI_FROM_LEFT) + at, density + j * nx, 1, k->nx, area);
+        cells_fill_row(numbers + aspi_cells_place(k, ASPI_FROM_RIGHT) + at, density + j * nx + nx - 1, -1,
                  k->nx, area);
     }
     for (i = 0; i < nx; i++) {
         size_t at = (size_t)i * aspi_cells_stride(k, ASPI_FROM_BELOW);
-        fill_row(numbers + aspi_cells_place(k, ASPI_FROM_BELOW) + at, density + i, nx, k->ny, area);
-        fill_row(numbers + aspi_cells_place(k, ASPI_FROM_ABOVE) + at, density + (ny - 1) * nx + i, -nx,
+        cells_fill_row(numbers + aspi_cells_place(k, ASPI_FROM_BELOW) + at, density + i, nx, k->ny, area);
+        cells_fill_row(numbers + aspi_cells_place(k, ASPI_FROM_ABOVE) + at, density + (ny - 1) * nx + i, -nx,
                  k->ny, area);
     }
     below[0] = 0.0;
@@ -94,11 +107,11 @@ static void fill_tables(aspi_cells *k, double *numbers)
     }
 }
 
-static asp_status check_range(const asp_slope_range *r, size_t nx, size_t ny, asp_error *err)
+static asp_status cells_check_range(const asp_slope_range *r, size_t nx, size_t ny, asp_error *err)
 {
     double width = r->high_x - r->low_x, height = r->high_y - r->low_y;
-    if (!side_ok(nx) || !side_ok(ny))
-        return asp_fail_range(err, side_ok(nx) ? "ny" : "nx", (double)(side_ok(nx) ? ny : nx), 1, 0,
+    if (!cells_side_ok(nx) || !cells_side_ok(ny))
+        return asp_fail_range(err, cells_side_ok(nx) ? "ny" : "nx", (double)(cells_side_ok(nx) ? ny : nx), 1, 0,
                               ASPI_HISTOGRAM_SIDE);
     if (!(aspi_abs(r->low_x) <= 1e3 && aspi_abs(r->high_x) <= 1e3 && aspi_abs(r->low_y) <= 1e3
           && aspi_abs(r->high_y) <= 1e3))
@@ -110,27 +123,28 @@ static asp_status check_range(const asp_slope_range *r, size_t nx, size_t ny, as
 }
 
 /* Cells without the empty border; the mean of the slopes moves into the map. */
-static void fill_cells(aspi_cells *k, const part *p, size_t nx, const double *values, double *mean)
+static void cells_fill(aspi_cells *k, const cells_part *p, size_t nx, const double *values, double *mean)
 {
     double *numbers = (double *)(void *)(k + 1), *density = numbers + aspi_cells_density(k);
-    double scale = 1.0 / (p->sum * k->dx * k->dy), sum_x = 0.0, sum_y = 0.0;
+    double scale = 1.0 / (p->sum * k->dx * k->dy);
+    cells_sum sum_x = { 0.0, 0.0 }, sum_y = { 0.0, 0.0 };
     int i, j;
     for (j = 0; j < k->ny; j++)
         for (i = 0; i < k->nx; i++) {
             double q = values[(p->y0 + (size_t)j) * nx + p->x0 + (size_t)i] / p->largest;
             density[j * k->nx + i] = q * scale;
-            sum_x += q * (i + 0.5);
-            sum_y += q * (j + 0.5);
+            cells_add(&sum_x, q * (i + 0.5));
+            cells_add(&sum_y, q * (j + 0.5));
         }
-    mean[0] = k->x0 + k->dx * (sum_x / p->sum);
-    mean[1] = k->y0 + k->dy * (sum_y / p->sum);
+    mean[0] = k->x0 + k->dx * (sum_x.value / p->sum);
+    mean[1] = k->y0 + k->dy * (sum_y.value / p->sum);
     k->x0 -= mean[0];
     k->y0 -= mean[1];
     k->high_x = k->x0 + k->dx * k->nx;
     k->high_y = k->y0 + k->dy * k->ny;
     k->per_x = 1.0 / k->dx;
     k->per_y = 1.0 / k->dy;
-    fill_tables(k, numbers);
+    cells_fill_tables(k, numbers);
 }
 
 asp_status asp_histogram_make(void *memory, size_t nx, size_t ny, asp_slope_range range,
@@ -138,12 +152,11 @@ asp_status asp_histogram_make(void *memory, size_t nx, size_t ny, asp_slope_rang
 {
     aspi_cells *k = (aspi_cells *)memory;
     asp_map whole = { 1.0, 0.0, 0.0, 1.0, 0.0, 0.0 };
-    asp_ndf made;
-    part p;
+    cells_part p = { 0, 0, 0, 0, 0.0, 0.0 };
     double mean[2];
-    asp_status s = check_range(&range, nx, ny, err);
+    asp_status s = cells_check_range(&range, nx, ny, err);
     if (!s)
-        s = used_part(nx, ny, values, &p, err);
+        s = cells_used(nx, ny, values, &p, err);
     if (s)
         return s;
     k->nx = (int)(p.x1 - p.x0);
@@ -152,15 +165,10 @@ asp_status asp_histogram_make(void *memory, size_t nx, size_t ny, asp_slope_rang
     k->dy = (range.high_y - range.low_y) / (double)ny;
     k->x0 = range.low_x + k->dx * (double)p.x0;
     k->y0 = range.low_y + k->dy * (double)p.y0;
-    fill_cells(k, &p, nx, values, mean);
+    cells_fill(k, &p, nx, values, mean);
     if (map)
         whole = *map;
     whole.tx += whole.m00 * mean[0] + whole.m01 * mean[1];
     whole.ty += whole.m10 * mean[0] + whole.m11 * mean[1];
-    s = asp_ndf_make(&asp_model_histogram, &whole, NULL, &made, err);
-    if (s)
-        return s;
-    made.data = k;
-    *out = made;
-    return ASP_OK;
+    return asp_ndf_make_data(&asp_model_histogram, &whole, NULL, k, out, err);
 }

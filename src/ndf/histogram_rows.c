@@ -6,7 +6,7 @@
 
 /* ---- a view in units of cells */
 
-typedef struct sight {
+typedef struct cells_sight {
     const double *table;        /* of the first row */
     ptrdiff_t stride;           /* to the next row, towards rows that see more */
     int rows, cols;
@@ -14,16 +14,16 @@ typedef struct sight {
     double a, b, low;           /* a > 0, b >= 0; h = low + b t */
     double per_a, per_b;
     double farthest, nearest;   /* least and greatest height over the rectangle */
-} sight;
+} cells_sight;
 
-static sight look(const aspi_cells *k, asp_vec3 v)
+static cells_sight cells_look(const aspi_cells *k, asp_vec3 v)
 {
     double a = v.x * k->dx, b = v.y * k->dy, swap;
     /* the height at the corner where it is least: exact where both ends of an axis are taken */
     double at_x = a > 0.0 ? k->high_x : k->x0, at_y = b > 0.0 ? k->high_y : k->y0;
     double from_x = a > 0.0 ? k->x0 : k->high_x, from_y = b > 0.0 ? k->y0 : k->high_y;
     aspi_cells_table which;
-    sight q;
+    cells_sight q;
     q.farthest = v.z - (v.x * at_x + v.y * at_y);
     q.nearest = v.z - (v.x * from_x + v.y * from_y);
     q.across = aspi_abs(b) > aspi_abs(a);
@@ -55,13 +55,13 @@ static sight look(const aspi_cells *k, asp_vec3 v)
 
 /* The part of one row on one side of the edge that its heights cross: in one cell, from e0 to e0 +
  * wide above the cell's edge, g = g0 + g1 x + g2 x^2 over x in [0, 1], every term positive. */
-typedef struct piece { double e0, wide, share, g0, g1, g2; } piece;
+typedef struct cells_piece { double e0, wide, share, g0, g1, g2; } cells_piece;
 
-ASP_FN piece make_piece(double mass, double next, double moment, double e0, double wide, double share,
-                        double a, double per_a)
+ASP_FN cells_piece cells_make_piece(double mass, double next, double moment, double e0, double wide,
+                                    double share, double a, double per_a)
 {
     double bend = 0.5 * (next - mass) * per_a;
-    piece p;
+    cells_piece p;
     p.e0 = e0;
     p.wide = wide;
     p.share = share;
@@ -71,62 +71,64 @@ ASP_FN piece make_piece(double mass, double next, double moment, double e0, doub
     return p;
 }
 
-ASP_FN double piece_mean(piece p) { return p.g0 + p.g1 * 0.5 + p.g2 * (1.0 / 3.0); }
+ASP_FN double cells_piece_mean(cells_piece p) { return p.g0 + p.g1 * 0.5 + p.g2 * (1.0 / 3.0); }
 
 /* The cell of height h: -1 before the first, cols behind the last. A NaN is in some cell. */
-ASP_FN int cell_of(double h, double per_a, double cols)
+ASP_FN int cells_of_height(double h, double per_a, double cols)
 {
     double s = aspi_max(aspi_min(cols, h * per_a), -1.0);
     return (int)(s + 1.0) - 1;
 }
 
-ASP_FN double positive(double x) { return x > 0.0 ? x : 0.0; }
+ASP_FN double cells_positive(double x) { return x > 0.0 ? x : 0.0; }
 
 /* Lower and upper piece of the row whose heights run from h0 to h1. Where no edge lies between, or
  * where b is less than a rounding of h, the split falls anywhere: g is continuous. */
-ASP_FN piece upper_piece(const double *row, int c, double h0, double h1, double a, double per_a,
-                         double per_b)
+ASP_FN cells_piece cells_upper_piece(const double *row, int c, double h0, double h1, double a,
+                                     double per_a, double per_b)
 {
     double edge = c * a, from = aspi_max(edge, h0);
     double wide = aspi_max(h1 - from, 0.0), share = aspi_min(wide * per_b, 1.0);
-    return make_piece(row[2 * c + 2], row[2 * c + 4], row[2 * c + 3], from - edge, wide, share, a, per_a);
+    return cells_make_piece(row[2 * c + 2], row[2 * c + 4], row[2 * c + 3], from - edge, wide, share,
+                            a, per_a);
 }
 
-ASP_FN piece lower_piece(const double *row, int c, int upper, double h0, double share, double a,
-                         double per_a)
+ASP_FN cells_piece cells_lower_piece(const double *row, int c, int upper, double h0, double share,
+                                     double a, double per_a)
 {
     double edge = c * a, from = aspi_max(edge, h0), wide = aspi_max(upper * a - from, 0.0);
-    return make_piece(row[2 * c + 2], row[2 * c + 4], row[2 * c + 3], from - edge, wide, share, a, per_a);
+    return cells_make_piece(row[2 * c + 2], row[2 * c + 4], row[2 * c + 3], from - edge, wide, share,
+                            a, per_a);
 }
 
-ASP_FN double row_sees(const sight *q, int r)
+ASP_FN double cells_row_sees(const cells_sight *q, int r)
 {
     double h0 = q->low + q->b * r, h1 = q->low + q->b * (r + 1), cols = q->cols;
-    int c0 = cell_of(h0, q->per_a, cols), c1 = cell_of(h1, q->per_a, cols);
+    int c0 = cells_of_height(h0, q->per_a, cols), c1 = cells_of_height(h1, q->per_a, cols);
     const double *row = q->table + r * q->stride;
-    piece upper = upper_piece(row, c1, h0, h1, q->a, q->per_a, q->per_b);
-    piece lower = lower_piece(row, c0, c1, h0, 1.0 - upper.share, q->a, q->per_a);
-    return upper.share * piece_mean(upper) + lower.share * piece_mean(lower);
+    cells_piece upper = cells_upper_piece(row, c1, h0, h1, q->a, q->per_a, q->per_b);
+    cells_piece lower = cells_lower_piece(row, c0, c1, h0, 1.0 - upper.share, q->a, q->per_a);
+    return upper.share * cells_piece_mean(upper) + lower.share * cells_piece_mean(lower);
 }
 
-ASP_CLONES static void rows_see(const sight *q, double *ASP_RESTRICT out)
+ASP_CLONES static void cells_rows_see(const cells_sight *q, double *ASP_RESTRICT out)
 {
-    int r, rows = q->rows;
-    sight local = *q;
-    for (r = 0; r < rows; r++)
-        out[r] = row_sees(&local, r);
+    int i, n = q->rows;
+    cells_sight local = *q;
+    for (i = 0; i < n; i++)
+        out[i] = cells_row_sees(&local, i);
 }
 
 double aspi_cells_sigma(const aspi_cells *k, asp_vec3 v)
 {
     double seen[ASPI_HISTOGRAM_SIDE], sum[4] = { 0.0, 0.0, 0.0, 0.0 };
-    sight q = look(k, v);
+    cells_sight q = cells_look(k, v);
     int r;
     if (q.nearest <= 0.0)
         return 0.0;
     if (q.farthest >= 0.0)
         return v.z;                    /* the mean of the slopes is 0 */
-    rows_see(&q, seen);
+    cells_rows_see(&q, seen);
     for (r = 0; r < q.rows; r++)
         sum[r & 3] += seen[r];
     /* infinite or NaN came in: NaN goes out */
@@ -145,7 +147,7 @@ double aspi_cells_P22(const aspi_cells *k, double x, double y)
 
 /* ---- samples */
 
-static asp_vec3 facet(const aspi_cells *k, double s, double t, double nothing)
+static asp_vec3 cells_facet(const aspi_cells *k, double s, double t, double nothing)
 {
     asp_vec3 m;
     m.x = -(k->x0 + k->dx * s) + nothing;
@@ -154,14 +156,14 @@ static asp_vec3 facet(const aspi_cells *k, double s, double t, double nothing)
     return m;
 }
 
-static double between(double x, double low, double high)
+static double cells_between(double x, double low, double high)
 {
     x = x > low ? x : low;
     return x < high ? x : high;
 }
 
 /* The last of `count` cells whose edge lies at or below `at`; edges stand `step` apart. */
-static int last_below(const double *edge, int step, int count, double at)
+static int cells_last_below(const double *edge, int step, int count, double at)
 {
     int low = 0, high = count;         /* edge[low] <= at < edge[high], in spirit */
     while (high - low > 1) {
@@ -177,20 +179,20 @@ static int last_below(const double *edge, int step, int count, double at)
 asp_vec3 aspi_cells_normal(const aspi_cells *k, double u1, double u2)
 {
     const double *below = aspi_cells_at(k, aspi_cells_below(k)), *row;
-    double at = between(u1, 0.0, 1.0) * below[k->ny], s, t;
-    int j = last_below(below, 1, k->ny, at), i;
-    t = between((at - below[j]) / (below[j + 1] - below[j]), 0.0, 1.0);
+    double at = cells_between(u1, 0.0, 1.0) * below[k->ny], s, t;
+    int j = cells_last_below(below, 1, k->ny, at), i;
+    t = cells_between((at - below[j]) / (below[j + 1] - below[j]), 0.0, 1.0);
     row = aspi_cells_at(k, aspi_cells_place(k, ASPI_FROM_LEFT))
         + (size_t)j * aspi_cells_stride(k, ASPI_FROM_LEFT) + 2;
-    at = between(u2, 0.0, 1.0) * row[2 * k->nx];
-    i = last_below(row, 2, k->nx, at);
-    s = between((at - row[2 * i]) / (row[2 * i + 2] - row[2 * i]), 0.0, 1.0);
-    return facet(k, i + s, j + t, (u1 + u2) * 0.0);
+    at = cells_between(u2, 0.0, 1.0) * row[2 * k->nx];
+    i = cells_last_below(row, 2, k->nx, at);
+    s = cells_between((at - row[2 * i]) / (row[2 * i + 2] - row[2 * i]), 0.0, 1.0);
+    return cells_facet(k, i + s, j + t, (u1 + u2) * 0.0);
 }
 
 /* x in [0, 1] with g0 x + g1 x^2/2 + g2 x^3/3 = at: convex, so that Newton's steps from above fall
  * without overshooting; each term alone bounds x from above. */
-static double invert_piece(const piece *p, double at)
+static double cells_invert_piece(const cells_piece *p, double at)
 {
     double x = 1.0;
     int i;
@@ -206,37 +208,37 @@ static double invert_piece(const piece *p, double at)
             break;
         x = next;
     }
-    return positive(x);
+    return cells_positive(x);
 }
 
 /* Where in a row: `at` is the visible mass before it. Returns x in [0, 1], and the height there. */
-static double invert_row(const sight *q, int r, double at, double *height)
+static double cells_invert_row(const cells_sight *q, int r, double at, double *height)
 {
     double h0 = q->low + q->b * r, h1 = q->low + q->b * (r + 1);
-    int c0 = cell_of(h0, q->per_a, q->cols), c1 = cell_of(h1, q->per_a, q->cols);
+    int c0 = cells_of_height(h0, q->per_a, q->cols), c1 = cells_of_height(h1, q->per_a, q->cols);
     const double *row = q->table + r * q->stride;
-    piece upper = upper_piece(row, c1, h0, h1, q->a, q->per_a, q->per_b);
-    piece lower = lower_piece(row, c0, c1, h0, 1.0 - upper.share, q->a, q->per_a);
-    double first = lower.share * piece_mean(lower), x;
+    cells_piece upper = cells_upper_piece(row, c1, h0, h1, q->a, q->per_a, q->per_b);
+    cells_piece lower = cells_lower_piece(row, c0, c1, h0, 1.0 - upper.share, q->a, q->per_a);
+    double first = lower.share * cells_piece_mean(lower), x;
     if (at < first) {
-        x = invert_piece(&lower, at / lower.share);
+        x = cells_invert_piece(&lower, at / lower.share);
         *height = c0 * q->a + lower.e0 + x * lower.wide;
-        return between(x * lower.share, 0.0, 1.0);
+        return cells_between(x * lower.share, 0.0, 1.0);
     }
-    x = invert_piece(&upper, positive(at - first) / (upper.share > 0.0 ? upper.share : 1.0));
+    x = cells_invert_piece(&upper, cells_positive(at - first) / (upper.share > 0.0 ? upper.share : 1.0));
     *height = c1 * q->a + upper.e0 + x * upper.wide;
-    return between(lower.share + x * upper.share, 0.0, 1.0);
+    return cells_between(lower.share + x * upper.share, 0.0, 1.0);
 }
 
 /* Where along a row at height h: the visible mass before edge c is a C_c + (h - a c) A_c, and inside
  * a cell it grows by f (e x - a x^2/2). */
-static double invert_along(const sight *q, int r, double h, double u)
+static double cells_invert_along(const cells_sight *q, int r, double h, double u)
 {
     const double *row = q->table + r * q->stride + 2;
-    int c = cell_of(h, q->per_a, q->cols), low = 0, high;
+    int c = cells_of_height(h, q->per_a, q->cols), low = 0, high;
     double e, f, at, rest, x;
     c = c < 0 ? 0 : c;
-    e = positive(h - c * q->a);
+    e = cells_positive(h - c * q->a);
     at = u * (q->a * row[2 * c + 1] + e * (row[2 * c] + 0.5 * e * q->per_a
          * (row[2 * c + 2] - row[2 * c])));
     high = c < q->cols ? c + 1 : q->cols;
@@ -247,32 +249,32 @@ static double invert_along(const sight *q, int r, double h, double u)
         else
             high = middle;
     }
-    e = positive(h - low * q->a);
+    e = cells_positive(h - low * q->a);
     f = row[2 * low + 2] - row[2 * low];
-    rest = positive(at - (q->a * row[2 * low + 1] + e * row[2 * low]));
+    rest = cells_positive(at - (q->a * row[2 * low + 1] + e * row[2 * low]));
     if (!(f > 0.0))
         return low;
     rest = rest / f;
-    x = 2.0 * rest / (e + aspi_sqrt(positive(e * e - 2.0 * q->a * rest)));
-    return low + (x > 0.0 ? between(x, 0.0, 1.0) : 0.0);
+    x = 2.0 * rest / (e + aspi_sqrt(cells_positive(e * e - 2.0 * q->a * rest)));
+    return low + (x > 0.0 ? cells_between(x, 0.0, 1.0) : 0.0);
 }
 
 asp_vec3 aspi_cells_visible(const aspi_cells *k, asp_vec3 v, double u1, double u2)
 {
     double seen[ASPI_HISTOGRAM_SIDE], total = 0.0, before = 0.0, at, h, s, t;
-    sight q = look(k, v);
+    cells_sight q = cells_look(k, v);
     int r;
-    rows_see(&q, seen);
+    cells_rows_see(&q, seen);
     for (r = 0; r < q.rows; r++)
         total += seen[r];
-    at = between(u1, 0.0, 1.0) * total;
+    at = cells_between(u1, 0.0, 1.0) * total;
     for (r = 0; r + 1 < q.rows && before + seen[r] <= at; r++)
         before += seen[r];
     while (r > 0 && !(seen[r] > 0.0))  /* rounding has run past the last row that sees */
         before -= seen[--r];
-    t = r + invert_row(&q, r, between(at - before, 0.0, seen[r]), &h);
-    s = invert_along(&q, r, h, between(u2, 0.0, 1.0));
+    t = r + cells_invert_row(&q, r, cells_between(at - before, 0.0, seen[r]), &h);
+    s = cells_invert_along(&q, r, h, cells_between(u2, 0.0, 1.0));
     s = q.back_s ? q.cols - s : s;
     t = q.back_t ? q.rows - t : t;
-    return facet(k, q.across ? t : s, q.across ? s : t, (u1 + u2 + (v.x + v.y + v.z)) * 0.0);
+    return cells_facet(k, q.across ? t : s, q.across ? s : t, (u1 + u2 + (v.x + v.y + v.z)) * 0.0);
 }

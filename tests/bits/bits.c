@@ -84,26 +84,15 @@ static void hash_doubles(uint64_t *h, const double *x, size_t n)
         hash_64(h, x[i]);
 }
 
-static int one_value(const asp_model *model, const char *spec, int verbose, hashes wide,
-                     hashes narrow)
+static void one_ndf(asp_ndf ndf, const char *text, int verbose, hashes wide, hashes narrow)
 {
-    char text[256];
-    asp_ndf ndf;
     asp_ndff ndff;
-    asp_error err;
     double A[9];
     asp_roughness five;
     hashes w, n;
     int i;
     memset(w, 0, sizeof w);
     memset(n, 0, sizeof n);
-    strcpy(text, model->name);
-    strcat(text, ":");
-    strcat(text, spec);
-    if (asp_ndf_parse(NULL, text, &ndf, &err) != ASP_OK) {
-        printf("%s refused: %s %s\n", text, err.name, err.reason);
-        return 1;
-    }
     ndff = asp_ndf_narrow(&ndf);
     hash_doubles(&w[Q_MAKE], ndf.shape, ASP_SHAPE_NUMBERS);
     hash_doubles(&w[Q_MAKE], ndf.table, ASP_TABLE_NUMBERS);
@@ -123,6 +112,41 @@ static int one_value(const asp_model *model, const char *spec, int verbose, hash
             printf("%s %s %016llx %016llx\n", text, quantity[i], (unsigned long long)w[i],
                    (unsigned long long)n[i]);
     }
+}
+
+static int one_value(const asp_model *model, const char *spec, int verbose, hashes wide,
+                     hashes narrow)
+{
+    char text[256];
+    asp_ndf ndf;
+    asp_error err;
+    strcpy(text, model->name);
+    strcat(text, ":");
+    strcat(text, spec);
+    if (asp_ndf_parse(NULL, text, &ndf, &err) != ASP_OK) {
+        printf("%s refused: %s %s\n", text, err.name, err.reason);
+        return 1;
+    }
+    one_ndf(ndf, text, verbose, wide, narrow);
+    return 0;
+}
+
+/* Slopes counted in cells, some of them empty, through a map. */
+static int one_histogram(int verbose, hashes wide, hashes narrow)
+{
+    enum { NX = 23, NY = 17 };
+    static double memory[32 * (NX + 3) * (NY + 3)], values[NX * NY];
+    const asp_slope_range range = { -0.5, 0.9, -0.3, 0.4 };
+    const asp_map map = { 0.75, 0.25, -0.1, 1.25, 0.05, -0.1 };
+    asp_ndf ndf;
+    int i;
+    state = 54321;
+    for (i = 0; i < NX * NY; i++)
+        values[i] = i % 5 ? uniform() * (double)(i % NX + 1) : 0;
+    if (asp_histogram_bytes(NX, NY) > sizeof memory
+        || asp_histogram_make(memory, NX, NY, range, values, &map, &ndf, NULL) != ASP_OK)
+        return 1;
+    one_ndf(ndf, "histogram", verbose, wide, narrow);
     return 0;
 }
 
@@ -154,6 +178,7 @@ int main(int argc, char **argv)
             refused += one_value(*m, spec, verbose, wide, narrow);
         }
     }
+    refused += one_histogram(verbose, wide, narrow);
     for (i = 0; i < QUANTITIES; i++)
         printf("%-16s float64 %016llx float32 %016llx\n", quantity[i],
                (unsigned long long)wide[i], (unsigned long long)narrow[i]);
