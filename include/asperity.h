@@ -13,6 +13,7 @@
  *   9  float32        the same calls with the suffix f
  *  10  Study          the STD paper's own maskings
  *  11  Conversions    roughness as other systems count it, moments of slopes, filtering
+ *  12  Walks          multiple scattering
  *
  * The core needs libm only. It allocates nothing, prints nothing, keeps no global state, and every
  * function may be called from any thread. Values are plain structs: copy them freely.
@@ -267,10 +268,16 @@ const asp_metal *asp_find_metal(const char *name);        /* "Au", "Ag", ...; NU
 
 typedef struct asp_bsdf asp_bsdf;        /* what a scattering model is: see asperity_ndf.h */
 
+/* What is carried from wo to wi: radiance (a path from the camera), or importance (one from a light).
+ * They differ where light crosses a boundary: radiance is denser inside by eta^2, so that a dielectric's
+ * f(wi, wo) = f(wo, wi) eta_o^2/eta_i^2 there. */
+typedef enum asp_transport { ASP_RADIANCE = 0, ASP_IMPORTANCE = 1 } asp_transport;
+
 typedef struct asp_material {
     const asp_bsdf *model;
     int     mask;                         /* asp_mask */
     int     fresnel;                      /* which Fresnel term the numbers below are for */
+    int     transport;                    /* asp_transport */
     asp_rgb a, b, c, d;                   /* the model's colours; see its record */
     asp_ndf ndf;
 } asp_material;
@@ -302,6 +309,9 @@ asp_rgb asp_eval(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
 asp_rgb asp_eval_cos(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
 double  asp_pdf(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
 asp_bsdf_sample asp_sample(const asp_material *mat, asp_vec3 wi, double u1, double u2);
+/* The same with the number that chooses between reflection and refraction given; asp_sample makes one
+ * of the bits of u1 and u2. Models with one lobe do not use it. */
+asp_bsdf_sample asp_sample_lobe(const asp_material *mat, asp_vec3 wi, double u1, double u2, double u3);
 
 /* ------------------------------------------------------------------ 8  Batches
  *
@@ -365,6 +375,7 @@ typedef struct asp_materialf {
     const asp_bsdf *model;
     int      mask;
     int      fresnel;
+    int      transport;
     asp_rgbf a, b, c, d;
     asp_ndff ndf;
 } asp_materialf;
@@ -394,6 +405,7 @@ asp_rgbf asp_evalf(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo);
 asp_rgbf asp_eval_cosf(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo);
 float    asp_pdff(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo);
 asp_bsdf_samplef asp_samplef(const asp_materialf *mat, asp_vec3f wi, float u1, float u2);
+asp_bsdf_samplef asp_sample_lobef(const asp_materialf *mat, asp_vec3f wi, float u1, float u2, float u3);
 
 void asp_D_nf(const asp_ndff *ndf, size_t n, asp_cvec3sf m, float *out);
 void asp_P22_nf(const asp_ndff *ndf, size_t n, const float *p_x, const float *p_y, float *out);
@@ -528,6 +540,33 @@ asp_status asp_ndf_average(size_t n, const asp_ndf *const *parts, const double *
 asp_status asp_ndf_footprint(const asp_ndf *base, size_t n, const double *slope_x,
                              const double *slope_y, const double *weight, const asp_model *model,
                              const double *shape, asp_match match, asp_ndf *out, asp_error *err);
+/* ------------------------------------------------------------------ 12  Multiple scattering
+ *
+ * Facets light one another. The walk follows light from facet to facet (Heitz, Hanika, d'Eon, Dachsbacher
+ * 2016) over every distribution, skewed ones included: those are closed by vertical walls (mask `wall`),
+ * which reflect and refract like facets, so that nothing is lost. Materials: conductor, dielectric (not
+ * thin: 0) and rough_diffuse. Uniform numbers come from a stream, because no walk's length is known. */
+
+/* A number in [0, 1), each time another. */
+typedef double asp_uniforms(void *state);
+
+/* An unbiased estimate of f cos(theta_o), single scattering included, by next-event estimation at each
+ * facet met. Its spread is that of the walk: use it with many numbers, or beside a sampler. Light that crosses
+ * a wall of a skewed dielectric before it meets any facet makes a Dirac peak, which only
+ * asp_walk_sample sees. */
+asp_rgb asp_walk_eval_cos(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, asp_uniforms *next,
+                          void *state);
+/* Where the walk comes out: wo, its weight f cos / (true density), and for multiple importance sampling
+ * the density below, which is not the walk's own. A walk that is absorbed has weight 0. */
+asp_bsdf_sample asp_walk_sample(const asp_material *mat, asp_vec3 wi, asp_uniforms *next, void *state);
+/* Density of single scattering in the share that gets out unhidden, a cosine lobe for the rest. Positive
+ * wherever the walk can end, integrates to at most 1. */
+double asp_walk_pdf(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
+
+asp_rgbf asp_walk_eval_cosf(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo, asp_uniforms *next,
+                            void *state);
+asp_bsdf_samplef asp_walk_samplef(const asp_materialf *mat, asp_vec3f wi, asp_uniforms *next, void *state);
+float asp_walk_pdff(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo);
 
 #ifdef __cplusplus
 }

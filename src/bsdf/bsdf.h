@@ -15,12 +15,21 @@ enum {
     ASPI_FRESNEL_DIELECTRIC    /* c.r = eta */
 };
 
+/* What a facet does with light. */
+enum {
+    ASPI_FACETS_NONE,          /* unknown, or more than facets: no walk */
+    ASPI_FACETS_REFLECT,       /* a mirror of the Fresnel term */
+    ASPI_FACETS_REFRACT,       /* a dielectric of index c.r */
+    ASPI_FACETS_DIFFUSE        /* Lambert's law, albedo a */
+};
+
 typedef struct aspi_bsdf_key { const char *name, *what; } aspi_bsdf_key;
 
 struct asp_bsdf {
     const char *name, *title, *source;
     const aspi_bsdf_key *keys;        /* ends with a NULL name */
     int mixed;                        /* 1: a cosine lobe is sampled beside the visible normals */
+    int facets;                       /* what a facet does with light, for walks */
     /* Reads the model's own keys and the Fresnel term's. */
     asp_status (*parse)(aspi_spec *spec, asp_material *out, asp_error *err);
     /* f from F and from x = D G2 / (4 cos_i cos_o), with y multiplying what does not come from
@@ -40,7 +49,21 @@ struct asp_bsdf {
                     const double *b, double *share);
     void (*share_nf)(const asp_materialf *mat, size_t n, const float *r, const float *g,
                      const float *b, float *share);
+    /* A model that does more than reflect brings whole calls instead of value and share, which are
+     * then NULL. f cos is f times |wo.z|; u3 chooses among lobes. */
+    void (*eval)(const asp_material *mat, const asp_vec3 *wi, const asp_vec3 *wo, int cosine, asp_rgb *f);
+    void (*evalf)(const asp_materialf *mat, const asp_vec3f *wi, const asp_vec3f *wo, int cosine,
+                  asp_rgbf *f);
+    double (*pdf)(const asp_material *mat, const asp_vec3 *wi, const asp_vec3 *wo);
+    float  (*pdff)(const asp_materialf *mat, const asp_vec3f *wi, const asp_vec3f *wo);
+    void (*sample)(const asp_material *mat, const asp_vec3 *wi, double u1, double u2, double u3,
+                   asp_bsdf_sample *out);
+    void (*samplef)(const asp_materialf *mat, const asp_vec3f *wi, float u1, float u2, float u3,
+                    asp_bsdf_samplef *out);
 };
+
+/* transport=radiance|importance into out->transport. */
+asp_status aspi_parse_transport(aspi_spec *spec, asp_material *out, asp_error *err);
 
 /* The keys that name a Fresnel term: metal, eta with k, eta alone, f0 with tint. `initial` is taken
  * when none is given. */
@@ -55,6 +78,8 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
 
 /* The formulas of a record, in the order of struct asp_bsdf. */
 #define ASPI_BSDF_OPS(n) n##_value_1_64, n##_value_1_32, n##_value_n_64, n##_value_n_32, \
-    n##_share_1_64, n##_share_1_32, n##_share_n_64, n##_share_n_32
+    n##_share_1_64, n##_share_1_32, n##_share_n_64, n##_share_n_32, NULL, NULL, NULL, NULL, NULL, NULL
+#define ASPI_BSDF_OWN(n) NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, \
+    n##_eval_64, n##_eval_32, n##_pdf_64, n##_pdf_32, n##_sample_64, n##_sample_32
 
 #endif

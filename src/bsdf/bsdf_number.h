@@ -7,10 +7,16 @@
 #define bsdf_value_n ASP_NDF_NAME(_value_n)
 #define bsdf_share ASP_NDF_NAME(_share)
 #define bsdf_share_n ASP_NDF_NAME(_share_n)
+#define bsdf_eval ASP_NDF_NAME(_eval)
+#define bsdf_pdf ASP_NDF_NAME(_pdf)
+#define bsdf_sample ASP_NDF_NAME(_sample)
 #endif
 #undef asp_mat
+#undef asp_sampled
 #if ASP_PRECISION == 64
 #define asp_mat asp_material
+#define asp_sampled asp_bsdf_sample
 #else
 #define asp_mat asp_materialf
+#define asp_sampled asp_bsdf_samplef
 #endif

@@ -22,7 +22,8 @@ static asp_status conductor_parse(aspi_spec *spec, asp_material *out, asp_error 
 static const aspi_bsdf_key conductor_keys[] = { ASPI_FRESNEL_KEYS, { NULL, NULL } };
 
 ASP_RECORD asp_bsdf asp_bsdf_conductor = {
-    "conductor", "Rough conductor", "Walter et al. 2007, eq. 20", conductor_keys, 0, conductor_parse,
+    "conductor", "Rough conductor", "Walter et al. 2007, eq. 20", conductor_keys, 0,
+    ASPI_FACETS_REFLECT, conductor_parse,
     ASPI_BSDF_OPS(conductor)
 };
 

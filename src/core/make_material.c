@@ -123,6 +123,21 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
     return ASP_OK;
 }
 
+asp_status aspi_parse_transport(aspi_spec *spec, asp_material *out, asp_error *err)
+{
+    aspi_item *item = aspi_spec_find(spec, "transport");
+    if (!item)
+        return ASP_OK;
+    if (item->value_size == 8 && !memcmp(item->value, "radiance", 8))
+        out->transport = ASP_RADIANCE;
+    else if (item->value_size == 10 && !memcmp(item->value, "importance", 10))
+        out->transport = ASP_IMPORTANCE;
+    else
+        return aspi_spec_fail(spec, item->value, ASP_EUNKNOWN, "transport", 9,
+                              "expected radiance or importance", err);
+    return ASP_OK;
+}
+
 static const asp_bsdf *find_bsdf(const char *name, size_t size)
 {
     size_t i;
@@ -203,6 +218,7 @@ asp_materialf asp_material_narrow(const asp_material *mat)
     out.model = mat->model;
     out.mask = mat->mask;
     out.fresnel = mat->fresnel;
+    out.transport = mat->transport;
     out.a = narrow_rgb(mat->a);
     out.b = narrow_rgb(mat->b);
     out.c = narrow_rgb(mat->c);

@@ -14,11 +14,12 @@
 #else
 #include "core/blocks.h"
 #include "bsdf/bsdf_number.h"
+#include "core/rng.h"
+#include "bsdf/facet_fresnel.h"
 #include "core/reflection.h"
 
 #ifndef ASPI_MATERIAL_NAMES
 #define ASPI_MATERIAL_NAMES
-#define fresnel_of ASP_NAME(fresnel_of)
 #define value_of ASP_NAME(value_of)
 #define share_of ASP_NAME(share_of)
 #define eval_scaled ASP_NAME(eval_scaled)
@@ -26,36 +27,14 @@
 #define sigma_of ASP_NAME(sigma_of)
 #define sample_pure ASP_NAME(sample_pure)
 #define sample_mixed ASP_NAME(sample_mixed)
-#define asp_sampled ASPI_CALL(asp_bsdf_sample)
+#define third_number ASP_NAME(third_number)
 #endif
-
-/* Numbers go by pointer: small structs of floats stall in the usual calling convention. */
-ASP_FN void fresnel_of(const asp_mat *mat, asp_real c, asp_real F[3])
-{
-    switch (mat->fresnel) {
-    case ASPI_FRESNEL_CONDUCTOR:
-        F[0] = aspi_fresnel_conductor(c, mat->c.r, mat->d.r);
-        F[1] = aspi_fresnel_conductor(c, mat->c.g, mat->d.g);
-        F[2] = aspi_fresnel_conductor(c, mat->c.b, mat->d.b);
-        break;
-    case ASPI_FRESNEL_F82:
-        F[0] = aspi_fresnel_f82(c, mat->c.r, mat->d.r);
-        F[1] = aspi_fresnel_f82(c, mat->c.g, mat->d.g);
-        F[2] = aspi_fresnel_f82(c, mat->c.b, mat->d.b);
-        break;
-    case ASPI_FRESNEL_DIELECTRIC:
-        F[0] = F[1] = F[2] = aspi_fresnel_dielectric(c, mat->c.r);
-        break;
-    default:
-        F[0] = F[1] = F[2] = c == c ? R(1.0) : c;
-    }
-}
 
 /* The model's value from the Fresnel term at c. */
 ASP_FN void value_of(const asp_mat *mat, asp_real c, asp_real x, asp_real y, asp_c3 *out)
 {
     asp_real F[3];
-    fresnel_of(mat, c, F);
+    aspi_fresnel(mat, c, F);
     mat->model->ASPI_CALL(value)(mat, F[0], F[1], F[2], x, y, out);
 }
 
@@ -77,7 +56,7 @@ static asp_real share_of(const asp_mat *mat, asp_real ci)
     asp_real F[3];
     if (!mat->model->mixed)
         return R(1.0);
-    fresnel_of(mat, ci, F);
+    aspi_fresnel(mat, ci, F);
     return mat->model->ASPI_CALL(share)(mat, F);
 }
 
@@ -98,19 +77,30 @@ ASP_FN asp_c3 eval_scaled(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real by)
 
 asp_c3 ASPI_CALL(asp_eval)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 {
-    return eval_scaled(mat, wi, wo, R(1.0));
+    asp_c3 f;
+    if (!mat->model->ASPI_CALL(eval))
+        return eval_scaled(mat, wi, wo, R(1.0));
+    mat->model->ASPI_CALL(eval)(mat, &wi, &wo, 0, &f);
+    return f;
 }
 
 asp_c3 ASPI_CALL(asp_eval_cos)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 {
-    return eval_scaled(mat, wi, wo, wo.z);
+    asp_c3 f;
+    if (!mat->model->ASPI_CALL(eval))
+        return eval_scaled(mat, wi, wo, wo.z);
+    mat->model->ASPI_CALL(eval)(mat, &wi, &wo, 1, &f);
+    return f;
 }
 
 asp_real ASPI_CALL(asp_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 {
-    asp_v3 m = aspi_half_vector(wi, wo);
-    asp_real lobe = aspi_lobe_density(wi.z, density_of(&mat->ndf, m),
-                                 sigma_of(&mat->ndf, wi));
+    asp_v3 m;
+    asp_real lobe;
+    if (mat->model->ASPI_CALL(pdf))
+        return mat->model->ASPI_CALL(pdf)(mat, &wi, &wo);
+    m = aspi_half_vector(wi, wo);
+    lobe = aspi_lobe_density(wi.z, density_of(&mat->ndf, m), sigma_of(&mat->ndf, wi));
     return mat->model->mixed ? aspi_mixed_density(wi.z, wo.z, lobe, share_of(mat, wi.z)) : lobe;
 }
 
@@ -152,10 +142,24 @@ static void sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2
     value_of(mat, c, x, y, &out->weight);
 }
 
+/* A number that knows nothing of u1 and u2 but is made of their bits. */
+ASP_FN asp_real third_number(asp_real u1, asp_real u2)
+{
+    uint64_t a = aspi_to_bits(u1), b = aspi_to_bits(u2);
+    return ASP_NAME(aspi_unit)(aspi_random_at(aspi_mix64(a), b));
+}
+
 asp_sampled ASPI_CALL(asp_sample)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
 {
+    return ASPI_CALL(asp_sample_lobe)(mat, wi, u1, u2, third_number(u1, u2));
+}
+
+asp_sampled ASPI_CALL(asp_sample_lobe)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
+{
     asp_sampled out;
-    if (mat->model->mixed)
+    if (mat->model->ASPI_CALL(sample))
+        mat->model->ASPI_CALL(sample)(mat, &wi, u1, u2, u3, &out);
+    else if (mat->model->mixed)
         sample_mixed(mat, wi, u1, u2, &out);
     else
         sample_pure(mat, wi, u1, u2, &out);

@@ -31,5 +31,7 @@ static inline uint64_t aspi_random_start(uint64_t seed, uint64_t stream)
 /* 53 or 24 random bits as a number in [0, 1). */
 static inline double aspi_unit64(uint64_t bits) { return (double)(bits >> 11) * 0x1p-53; }
 static inline float  aspi_unit32(uint64_t bits) { return (float)(bits >> 40) * 0x1p-24f; }
+#define aspi_unit_64 aspi_unit64
+#define aspi_unit_32 aspi_unit32
 
 #endif

@@ -1,0 +1,256 @@
+/* dielectric.c - rough dielectrics: reflection and refraction by the facets, from both sides
+ *
+ * Walter et al. 2007, section 5; eq. 7 of the Ellipsoid NDF paper is its sign function. Seen from
+ * inside everything is turned round by a point reflection: directions change sign, the index becomes its
+ * inverse, and the same formulas serve. Walter's eq. 22 gives F for both ways, total reflection too.
+ *
+ * `thin` is a sheet of the material, both faces alike and the same facet on both: with the reflections
+ * inside summed up, R = 2F/(1 + F), and what passes leaves in the mirror image of the reflected
+ * direction in the sheet. */
+#ifndef ASP_PRECISION
+#include "bsdf/bsdf.h"
+
+#define ASP_NDF dielectric
+#define ASP_PRECISION 64
+#include "dielectric.c"
+#undef ASP_PRECISION
+#define ASP_PRECISION 32
+#include "dielectric.c"
+#undef ASP_PRECISION
+#undef ASP_NDF
+
+static asp_status dielectric_parse(aspi_spec *spec, asp_material *out, asp_error *err)
+{
+    double eta = 1.5, thin = 0.0;
+    asp_status s = aspi_spec_number(spec, "eta", &eta, NULL, err);
+    if (!s && !(eta >= 0.01 && eta <= 100.0)) {
+        asp_fail_range(err, "eta", eta, 0.01, 0, 100.0);
+        s = aspi_spec_blame(spec, "eta", ASP_EINVAL, err);
+    }
+    if (!s)
+        s = aspi_spec_number(spec, "thin", &thin, NULL, err);
+    if (!s && thin != 0.0 && thin != 1.0) {
+        asp_fail_range(err, "thin", thin, 0, 0, 1);
+        s = aspi_spec_blame(spec, "thin", ASP_EINVAL, err);
+    }
+    if (!s)
+        s = aspi_parse_transport(spec, out, err);
+    out->fresnel = ASPI_FRESNEL_DIELECTRIC;
+    out->c.r = out->c.g = out->c.b = eta;
+    out->a.r = out->a.g = out->a.b = thin;
+    return s;
+}
+
+static const aspi_bsdf_key dielectric_keys[] = {
+    { "eta", "index of refraction, interior over exterior, 0.01 to 100, default 1.5" },
+    { "thin", "1: a sheet instead of a half space, default 0" },
+    { "transport", "radiance (default) or importance: whether what crosses is scaled by 1/eta^2" },
+    { NULL, NULL }
+};
+
+ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
+    "dielectric", "Rough dielectric", "Walter et al. 2007, eqs. 20-21", dielectric_keys, 0,
+    ASPI_FACETS_REFRACT, dielectric_parse, ASPI_BSDF_OWN(dielectric)
+};
+
+#else
+#include "asperity/elementary.h"
+#include "bsdf/bsdf_number.h"
+#include "core/blocks.h"
+#include "core/reflection.h"
+#include "core/refraction.h"
+
+#ifndef DIELECTRIC_NAMES
+#define DIELECTRIC_NAMES
+#define turned ASP_NDF_NAME(_turned)
+#define case_of ASP_NDF_NAME(_case)
+#define make_case ASP_NDF_NAME(_make)
+#define refracted_masking ASP_NDF_NAME(_refracted_masking)
+#define crossing_scale ASP_NDF_NAME(_crossing)
+#define joint_reflected ASP_NDF_NAME(_joint_reflected)
+#endif
+
+/* A pair of directions with wi above: which facet joins them, and F there. */
+typedef struct case_of {
+    asp_v3 wi, wo, m;
+    asp_real eta, c, wm, F;      /* wi.m, wo.m */
+    asp_real sigma_i;
+    int refracts, dark;
+} case_of;
+
+ASP_FN asp_v3 turned(asp_v3 w, asp_real sign)
+{
+    w.x = sign * w.x;
+    w.y = sign * w.y;
+    w.z = sign * w.z;
+    return w;
+}
+
+ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
+{
+    int thin = mat->a.r > R(0.0);
+    asp_real sign = wi.z < R(0.0) ? R(-1.0) : R(1.0);
+    case_of k;
+    k.eta = sign < R(0.0) && !thin ? R(1.0) / mat->c.r : mat->c.r;
+    k.wi = turned(wi, sign);
+    k.wo = turned(wo, sign);
+    k.refracts = k.wo.z < R(0.0);
+    if (thin && k.refracts) {
+        k.wo.z = -k.wo.z;
+        k.m = aspi_half_vector(k.wi, k.wo);
+    } else {
+        k.m = k.refracts ? aspi_bent_half(k.wi, k.wo, k.eta) : aspi_half_vector(k.wi, k.wo);
+    }
+    k.c = aspi_dot(k.wi, k.m);
+    k.wm = aspi_dot(k.wo, k.m);
+    k.F = aspi_fresnel_dielectric(k.c, k.eta);
+    if (thin)
+        k.F = R(2.0) * k.F / (R(1.0) + k.F);
+    k.dark = !(k.c > R(0.0) && k.m.z > ASP_FLAT && k.wi.z > R(0.0) && k.wo.z != R(0.0))
+          || mat->c.r == R(1.0);
+    k.sigma_i = ASPI_CALL(asp_sigma)(&mat->ndf, k.wi);
+    return k;
+}
+
+#if ASP_PRECISION == 64
+/* ln Gamma(x), x >= 1: Stirling's series from 8 on, where the recurrence brings it. */
+ASP_FN double log_gamma(double x)
+{
+    int low = x < 8.0;
+    double y = low ? x : 1.0;
+    double p = y * (y + 1.0) * (y + 2.0) * (y + 3.0) * (y + 4.0) * (y + 5.0) * (y + 6.0);
+    double z = low ? x + 7.0 : x, i = 1.0 / z, i2 = i * i, s;
+    s = -691.0 / 360360.0 + i2 * (1.0 / 156.0);
+    s = 1.0 / 1188.0 + i2 * s;
+    s = -1.0 / 1680.0 + i2 * s;
+    s = 1.0 / 1260.0 + i2 * s;
+    s = -1.0 / 360.0 + i2 * s;
+    s = 1.0 / 12.0 + i2 * s;
+    s = (z - 0.5) * aspi_log(z) - z + 0.91893853320467274178 + i * s;
+    return low ? s - aspi_log(p) : s;
+}
+
+/* Euler's B(a, b), a and b at least 1; in float64 for both precisions, because the logarithms cancel. */
+static double beta(double a, double b)
+{
+    return a + b > 1e6 ? 0.0 : aspi_exp(log_gamma(a) + log_gamma(b) - log_gamma(a + b));
+}
+#endif
+
+/* G2 of light that crosses: the one direction sees from above, the other from below, so that heights
+ * are opposed. Heitz 2014, sec. 5.4 (after Dupuy): B(1 + Lambda_i, 1 + Lambda_o). V-cavities: what both
+ * sides leave of a groove, G1 + G1 - 1. */
+ASP_FN asp_real refracted_masking(const asp_mat *mat, const case_of *k, asp_real sigma_o)
+{
+    asp_real ci = k->wi.z, co = aspi_abs(k->wo.z);
+    asp_v3 below = turned(k->wo, R(-1.0));
+    asp_real a = aspi_masked(&mat->ndf, k->wi, k->sigma_i, mat->mask) / ci;
+    asp_real b = aspi_masked(&mat->ndf, below, sigma_o, mat->mask) / co;
+    if ((mat->mask & 15) == ASP_MASK_UNCORRELATED)
+        return R(1.0) / (a * b);
+    if ((mat->mask & 15) == ASP_MASK_V_CAVITY) {
+        asp_real open_i = aspi_min(R(1.0), R(2.0) * k->m.z * ci / k->c);
+        asp_real open_o = aspi_min(R(1.0), R(2.0) * k->m.z * co / aspi_max(-k->wm, ASP_SMALLEST));
+        return aspi_max(open_i + open_o - R(1.0), R(0.0));
+    }
+    return R(beta(a, b));
+}
+
+/* G2 / (ci co) of a reflection. */
+ASP_FN asp_real joint_reflected(const asp_mat *mat, const case_of *k, asp_real sigma_o)
+{
+    asp_real si = aspi_masked(&mat->ndf, k->wi, k->sigma_i, mat->mask);
+    asp_real so = aspi_masked(&mat->ndf, k->wo, sigma_o, mat->mask);
+    return aspi_joint(k->wi.z, k->wo.z, si, so, k->m.z, k->c, k->c, mat->mask);
+}
+
+ASP_FN asp_real crossing_scale(const asp_mat *mat, const case_of *k)
+{
+    return mat->transport == ASP_IMPORTANCE || mat->a.r > R(0.0) ? R(1.0)
+                                                                   : R(1.0) / (k->eta * k->eta);
+}
+
+/* f times |cos_o|^cosine. */
+static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, asp_c3 *out)
+{
+    case_of k = make_case(mat, *wi, *wo);
+    asp_real nothing = k.c * R(0.0), f = nothing, D, co = aspi_abs(wo->z);
+    if (!k.dark) {
+        int thin = mat->a.r > R(0.0);
+        D = ASPI_CALL(asp_D)(&mat->ndf, k.m);
+        if (!k.refracts || thin) {
+            asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, k.wo);
+            asp_real share = k.refracts ? R(1.0) - k.F : k.F;
+            f = share * aspi_finite(R(0.25) * D * joint_reflected(mat, &k, so));
+            f = cosine ? f * co : f;
+        } else if (k.wm < R(0.0)) {
+            asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, turned(k.wo, R(-1.0)));
+            asp_real G2 = refracted_masking(mat, &k, so);
+            f = (R(1.0) - k.F) * aspi_finite(k.c * D * aspi_bent_density(k.c, k.wm, k.eta) * G2 / k.wi.z)
+              * crossing_scale(mat, &k);
+            f = cosine ? f : f / co;
+        }
+    }
+    out->r = out->g = out->b = f;
+}
+
+static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
+{
+    case_of k = make_case(mat, *wi, *wo);
+    asp_real nothing = k.c * R(0.0), p;
+    int thin = mat->a.r > R(0.0);
+    if (k.dark || (k.refracts && !thin && k.wm >= R(0.0)))
+        return nothing;
+    p = ASPI_CALL(asp_D)(&mat->ndf, k.m) / aspi_max(k.sigma_i, ASP_SMALLEST);
+    if (!k.refracts || thin)
+        p = (k.refracts ? R(1.0) - k.F : k.F) * R(0.25) * p;
+    else
+        p = (R(1.0) - k.F) * k.c * p * aspi_bent_density(k.c, k.wm, k.eta);
+    return aspi_finite(p);
+}
+
+/* A visible normal, then reflection or refraction by F: F cancels in the weight. */
+static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2, asp_real u3,
+                        asp_sampled *out)
+{
+    int thin = mat->a.r > R(0.0), refracts;
+    asp_real sign = wi->z < R(0.0) ? R(-1.0) : R(1.0), c, F, eta;
+    asp_real nothing = (wi->x + wi->y + wi->z) * R(0.0), weight = nothing;
+    asp_v3 v = turned(*wi, sign), m, wo;
+    case_of k;
+    out->pdf = nothing;
+    out->wo = turned(*wi, R(-1.0));
+    out->weight.r = out->weight.g = out->weight.b = nothing;
+    if (mat->c.r == R(1.0)) {
+        /* nothing is there: the light goes on */
+        out->weight.r = out->weight.g = out->weight.b = R(1.0) + nothing;
+        return;
+    }
+    if (v.z <= R(0.0) || nothing != R(0.0))
+        return;
+    m = ASPI_CALL(asp_sample_visible)(&mat->ndf, v, u1, u2);
+    c = aspi_dot(v, m);
+    eta = sign < R(0.0) && !thin ? R(1.0) / mat->c.r : mat->c.r;
+    F = aspi_fresnel_dielectric(c, eta);
+    F = thin ? R(2.0) * F / (R(1.0) + F) : F;
+    refracts = u3 >= F;
+    wo = refracts && !thin ? aspi_refract(v, m, eta) : aspi_reflect(v, m);
+    if (refracts && thin)
+        wo.z = -wo.z;
+    out->wo = turned(wo, sign);
+    if (refracts ? wo.z >= R(0.0) : wo.z <= R(0.0))
+        return; /* into the surface again: single scattering loses this light */
+    k = make_case(mat, *wi, out->wo);
+    out->pdf = bsdf_pdf(mat, wi, &out->wo);
+    if (k.dark || out->pdf <= R(0.0))
+        return;
+    if (!refracts || thin) {
+        asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, k.wo);
+        weight = k.sigma_i * aspi_abs(k.wo.z) * joint_reflected(mat, &k, so);
+    } else {
+        asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, turned(k.wo, R(-1.0)));
+        weight = refracted_masking(mat, &k, so) * k.sigma_i / k.wi.z * crossing_scale(mat, &k);
+    }
+    out->weight.r = out->weight.g = out->weight.b = weight;
+}
+#endif

@@ -1,0 +1,146 @@
+/* rough_diffuse.c - Lambertian facets under any distribution
+ *
+ * f = albedo/pi G2/(cos_i cos_o) int max(0, wi.m) max(0, wo.m) D(m) dm, with the visible facets of either
+ * side as nodes: over the visible normals of wi the integral is sigma(wi) times the mean of max(0, wo.m).
+ * Exact but for the rule, a lattice of ROUGH_NODES points of (u1, u2) (Fibonacci's, made periodic in u2
+ * by itself and in u1 by reflection); both sides are averaged, so that f is reciprocal to rounding.
+ *
+ * Approximations by name, which take their one number from the slopes' spread along x and y (tan^2 of
+ * sigma = (alpha_x^2 + alpha_y^2)/4, the Gaussian facets of the same alpha): `oren_nayar` (Oren, Nayar
+ * 1994, the qualitative model) and `fujii` (Fujii 2012, without its dark ring at grazing angles). */
+#ifndef ASP_PRECISION
+#include "bsdf/bsdf.h"
+
+#define ROUGH_NODES 233
+#define ROUGH_STEP 144
+
+enum { ROUGH_EXACT, ROUGH_OREN_NAYAR, ROUGH_FUJII };
+
+#define ASP_NDF rough_diffuse
+#define ASP_PRECISION 64
+#include "rough_diffuse.c"
+#undef ASP_PRECISION
+#define ASP_PRECISION 32
+#include "rough_diffuse.c"
+#undef ASP_PRECISION
+#undef ASP_NDF
+
+static asp_status rough_diffuse_parse(aspi_spec *spec, asp_material *out, asp_error *err)
+{
+    static const char *const forms[] = { "exact", "oren_nayar", "fujii" };
+    aspi_item *item;
+    asp_status s;
+    size_t i = 0;
+    out->a.r = out->a.g = out->a.b = 0.8;
+    s = aspi_spec_colour(spec, "albedo", 0.0, 0, 1.0, &out->a, NULL, err);
+    if (s || (item = aspi_spec_find(spec, "form")) == NULL)
+        return s;
+    while (i < 3 && (strlen(forms[i]) != item->value_size
+                     || memcmp(forms[i], item->value, item->value_size)))
+        i++;
+    if (i == 3)
+        return aspi_spec_fail(spec, item->value, ASP_EUNKNOWN, "form", 4,
+                              "expected exact, oren_nayar or fujii", err);
+    out->b.r = (double)i;
+    return ASP_OK;
+}
+
+static const aspi_bsdf_key rough_diffuse_keys[] = {
+    { "albedo", "of a facet, 0 to 1, default 0.8" },
+    { "form", "exact (default), oren_nayar or fujii" },
+    { NULL, NULL }
+};
+
+ASP_RECORD asp_bsdf asp_bsdf_rough_diffuse = {
+    "rough_diffuse", "Lambertian facets", "Heitz et al. 2016, sec. 5.3; Oren, Nayar 1994",
+    rough_diffuse_keys, 0, ASPI_FACETS_DIFFUSE, rough_diffuse_parse, ASPI_BSDF_OWN(rough_diffuse)
+};
+
+#else
+#include "asperity/elementary.h"
+#include "bsdf/bsdf_number.h"
+#include "core/blocks.h"
+#include "core/reflection.h"
+
+#ifndef ROUGH_DIFFUSE_NAMES
+#define ROUGH_DIFFUSE_NAMES
+#define half_mean ASP_NDF_NAME(_half_mean)
+#define exact_part ASP_NDF_NAME(_exact_part)
+#define named_part ASP_NDF_NAME(_named_part)
+#endif
+
+/* Mean of max(0, b.m) over the facets visible from a. */
+static asp_real half_mean(const asp_shape *k, const asp_v3 *a, const asp_v3 *b)
+{
+    asp_real sum = R(0.0);
+    int i;
+    for (i = 0; i < ROUGH_NODES; i++) {
+        asp_real x = (R(i) + R(0.5)) * R(1.0 / ROUGH_NODES);
+        asp_real y = R(i * ROUGH_STEP % ROUGH_NODES) * R(1.0 / ROUGH_NODES);
+        asp_v3 m = ASPI_CALL(asp_sample_visible)(k, *a, x, y);
+        asp_real c = aspi_dot(*b, m);
+        sum = sum + (c > R(0.0) ? c : R(0.0));
+    }
+    return sum * R(1.0 / ROUGH_NODES);
+}
+
+/* pi f / albedo. */
+static asp_real exact_part(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
+{
+    const asp_shape *k = &mat->ndf;
+    asp_real si = ASPI_CALL(asp_sigma)(k, *wi), so = ASPI_CALL(asp_sigma)(k, *wo);
+    asp_real integral = R(0.5) * (si * half_mean(k, wi, wo) + so * half_mean(k, wo, wi));
+    asp_real mi = aspi_masked(k, *wi, si, mat->mask), mo = aspi_masked(k, *wo, so, mat->mask);
+    return integral * aspi_joint(wi->z, wo->z, mi, mo, R(1.0), R(1.0), R(1.0),
+                                 mat->mask & 15 ? ASP_MASK_UNCORRELATED : ASP_MASK_CORRELATED);
+}
+
+/* pi f / albedo of the approximations: A + B s/t with s = wi.wo - cos cos (Oren, Nayar 1994, eq. 30 in
+ * Cartesian form); t = max(cos_i, cos_o) where s > 0. */
+static asp_real named_part(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
+{
+    const asp_shape *k = &mat->ndf;
+    asp_real spread = R(0.25) * (k->map.m00 * k->map.m00 + k->map.m01 * k->map.m01
+                                 + k->map.m10 * k->map.m10 + k->map.m11 * k->map.m11);
+    asp_real angle = aspi_atan(aspi_sqrt(spread), R(1.0)), s2 = angle * angle;
+    asp_real s = wi->x * wo->x + wi->y * wo->y, t;
+    if (mat->b.r == R(ROUGH_OREN_NAYAR)) {
+        t = s > R(0.0) ? aspi_max(aspi_max(wi->z, wo->z), ASP_SMALLEST) : R(1.0);
+        s = s > R(0.0) ? s : R(0.0);
+        return R(1.0) - R(0.5) * s2 / (s2 + R(0.33)) + R(0.45) * s2 / (s2 + R(0.09)) * s / t;
+    }
+    t = s > R(0.0) ? aspi_max(aspi_max(wi->z, wo->z), ASP_SMALLEST) : R(1.0);
+    return (R(1.0) + angle * s / t) / (R(1.0) + R(0.5 - 2.0 / (3.0 * ASP_PI)) * angle);
+}
+
+static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, asp_c3 *out)
+{
+    asp_real f = (wi->x + wi->y + wi->z + wo->x + wo->y + wo->z) * R(0.0);
+    if (wi->z > R(0.0) && wo->z > R(0.0) && f == R(0.0)) {
+        f = mat->b.r == R(ROUGH_EXACT) ? exact_part(mat, wi, wo) : named_part(mat, wi, wo);
+        f = f * R(1.0 / ASP_PI) * (cosine ? wo->z : R(1.0));
+    }
+    out->r = mat->a.r * f;
+    out->g = mat->a.g * f;
+    out->b = mat->a.b * f;
+}
+
+static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
+{
+    asp_real p = aspi_above(wo->z) * R(1.0 / ASP_PI);
+    (void)mat;
+    return wi->z <= R(0.0) ? R(0.0) : p + wi->z * R(0.0);
+}
+
+static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2, asp_real u3,
+                        asp_sampled *out)
+{
+    (void)u3;
+    out->wo = aspi_cosine_lobe(*wi, u1, u2);
+    out->pdf = bsdf_pdf(mat, wi, &out->wo);
+    bsdf_eval(mat, wi, &out->wo, 0, &out->weight);
+    out->weight.r = out->weight.r * R(ASP_PI);
+    out->weight.g = out->weight.g * R(ASP_PI);
+    out->weight.b = out->weight.b * R(ASP_PI);
+}
+#endif

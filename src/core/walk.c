@@ -1,0 +1,483 @@
+/* walk.c - multiple scattering: a random walk over the microsurface, asperity.h section 12
+ *
+ * Heitz, Hanika, d'Eon, Dachsbacher 2016. Heights appear only through q, the share of the surface that
+ * lies below the ray (outside) or above it (inside), so that no distribution of heights is needed. With
+ * v the direction that facets in the ray's way face (back along the ray outside, along it inside) and
+ *     rate = sigma(v) / |d.z|
+ * a ray towards the bulk meets a facet before q' with probability 1 - (q'/q)^rate, one that leads away
+ * gets out with probability q^rate. A surface of mean slope t is closed by vertical walls of area |t|
+ * facing +t (Walter et al. 2014, sec. 5.1); then sigma(v) - sigma(-v) = v.z, which makes both agree.
+ *
+ * Read three times like facets.c. */
+#ifndef ASP_PRECISION
+#include "bsdf/bsdf.h"
+
+#define ASP_PRECISION 64
+#include "walk.c"
+#undef ASP_PRECISION
+#define ASP_PRECISION 32
+#include "walk.c"
+#undef ASP_PRECISION
+
+#else
+#include "core/blocks.h"
+#include "bsdf/bsdf_number.h"
+#include "bsdf/facet_fresnel.h"
+#include "core/reflection.h"
+#include "core/refraction.h"
+
+#ifndef ASPI_WALK_NAMES
+#define ASPI_WALK_NAMES
+#define walker ASP_NAME(walker)
+#define uniform ASP_NAME(uniform)
+#define negate ASP_NAME(negate)
+#define walls_seen ASP_NAME(walls_seen)
+#define area ASP_NAME(area)
+#define power ASP_NAME(power)
+#define facing ASP_NAME(facing)
+#define fly ASP_NAME(fly)
+#define leaves ASP_NAME(leaves)
+#define wall_normal ASP_NAME(wall_normal)
+#define next_normal ASP_NAME(next_normal)
+#define scatter ASP_NAME(scatter)
+#define facet_phase ASP_NAME(facet_phase)
+#define by_reflection ASP_NAME(by_reflection)
+#define by_refraction ASP_NAME(by_refraction)
+#define by_walls ASP_NAME(by_walls)
+#define add_scaled ASP_NAME(add_scaled)
+#define connect ASP_NAME(connect)
+#define survives ASP_NAME(survives)
+#define start_walk ASP_NAME(start_walk)
+#define facet_sends ASP_NAME(facet_sends)
+#define by_wall ASP_NAME(by_wall)
+#define crossing ASP_NAME(crossing)
+#define walkable ASP_NAME(walkable)
+/* Roulette begins after so many facets; walks end by it, and by this bound where nothing is absorbed. */
+#define ASPI_WALK_SURE 4
+#define ASPI_WALK_LONGEST 100000
+#endif
+
+/* A ray: direction, side, q, colour carried, and the facing area at the last meeting. */
+typedef struct walker {
+    const asp_mat *mat;
+    asp_uniforms *next;
+    void *state;
+    asp_v3 d;
+    int inside;
+    asp_real q;
+    asp_c3 carried;
+} walker;
+
+ASP_FN asp_real uniform(const walker *r)
+{
+    asp_real u = R(r->next(r->state));
+    /* float32 rounds numbers near 1 up */
+    return u < R(1.0) ? u : (ASP_PRECISION == 64 ? R(1.0 - 0x1p-53) : R(1.0 - 0x1p-24));
+}
+
+ASP_FN asp_v3 negate(asp_v3 a)
+{
+    a.x = -a.x;
+    a.y = -a.y;
+    a.z = -a.z;
+    return a;
+}
+
+/* Area of the walls seen from v. */
+ASP_FN asp_real walls_seen(const asp_shape *k, asp_v3 v)
+{
+    asp_real s = k->map.tx * v.x + k->map.ty * v.y;
+    return s > R(0.0) ? s : R(0.0);
+}
+
+/* Facets and walls seen from v: at least v.z, which rounding must not undercut. */
+ASP_FN asp_real area(const asp_shape *k, asp_v3 v)
+{
+    asp_real a = ASPI_CALL(asp_sigma)(k, v) + walls_seen(k, v);
+    return aspi_max(a, v.z);
+}
+
+/* u^(over/under), 0 <= u <= 1; u^infinity is 0, for u = 1 too. */
+ASP_FN asp_real power(asp_real u, asp_real over, asp_real under)
+{
+    if (!(under > R(0.0)) || u <= R(0.0))
+        return R(0.0);
+    return aspi_exp(aspi_log(u) * aspi_min(over / under, R(1e6)));
+}
+
+/* What facets in the way of the ray face. */
+ASP_FN asp_v3 facing(asp_v3 d, int inside) { return inside ? d : negate(d); }
+
+/* Flies to the next facet; 0 where there is none and the ray is out. */
+ASP_FN int fly(walker *r, asp_real seen)
+{
+    asp_real u = R(1.0) - uniform(r), height = aspi_abs(r->d.z);
+    int deeper = r->inside ? r->d.z > R(0.0) : r->d.z < R(0.0);
+    asp_real p = power(u, height, seen);
+    if (deeper) {
+        r->q = aspi_max(r->q * p, R(1e-30));
+        return 1;
+    }
+    if (r->q >= p)
+        return 0;
+    r->q = r->q / p;
+    return 1;
+}
+
+/* Probability that a ray from q along w, on the side it leaves by, meets nothing more. */
+ASP_FN asp_real leaves(const asp_shape *k, asp_v3 w, int inside, asp_real q)
+{
+    asp_real height = inside ? -w.z : w.z;
+    if (height <= R(0.0))
+        return R(0.0);
+    return power(q, area(k, facing(w, inside)), height);
+}
+
+ASP_FN asp_v3 wall_normal(const asp_shape *k)
+{
+    asp_v3 m;
+    m.x = k->map.tx;
+    m.y = k->map.ty;
+    m.z = R(0.0);
+    return aspi_normalize(m);
+}
+
+/* The facet that the ray meets, of those that face v; *wall says whether it is one of the walls. */
+ASP_FN asp_v3 next_normal(walker *r, asp_v3 v, asp_real seen, int *wall)
+{
+    const asp_shape *k = &r->mat->ndf;
+    asp_real u = uniform(r), share = walls_seen(k, v) / seen;
+    *wall = u < share;
+    if (*wall)
+        return wall_normal(k);
+    u = (u - share) / (R(1.0) - share);
+    return ASPI_CALL(asp_sample_visible)(k, v, aspi_min(u, R(1.0) - R(0x1p-24)), uniform(r));
+}
+
+/* Leaves the facet m; the side and what is carried change. */
+ASP_FN void scatter(walker *r, asp_v3 m)
+{
+    const asp_mat *mat = r->mat;
+    asp_v3 v = facing(r->d, r->inside);
+    asp_real c = aspi_dot(v, m), F[3];
+    if (mat->model->facets == ASPI_FACETS_DIFFUSE) {
+        asp_real u1 = uniform(r);
+        r->d = aspi_around(m, aspi_cosine_lobe(m, u1, uniform(r)));
+        r->carried.r *= mat->a.r;
+        r->carried.g *= mat->a.g;
+        r->carried.b *= mat->a.b;
+        return;
+    }
+    if (mat->model->facets == ASPI_FACETS_REFRACT) {
+        asp_real eta = r->inside ? R(1.0) / mat->c.r : mat->c.r;
+        if (uniform(r) >= aspi_fresnel_dielectric(c, eta)) {
+            asp_v3 t = aspi_refract(v, m, eta);
+            r->d = r->inside ? negate(t) : t;
+            r->inside = !r->inside;
+            r->q = R(1.0) - r->q;
+            return;
+        }
+        v = aspi_reflect(v, m);
+        r->d = r->inside ? negate(v) : v;
+        return;
+    }
+    aspi_fresnel(mat, c, F);
+    r->carried.r *= F[0];
+    r->carried.g *= F[1];
+    r->carried.b *= F[2];
+    r->d = aspi_reflect(v, m);
+}
+
+/* Density of normals met, of those that face v, over the area seen. */
+ASP_FN asp_real facet_phase(const asp_shape *k, asp_v3 v, asp_v3 m, asp_real seen)
+{
+    asp_real c = aspi_dot(v, m);
+    return c <= R(0.0) ? R(0.0) : c * ASPI_CALL(asp_D)(k, m) / seen;
+}
+
+/* Density of the direction w (of travel, on the same side) after one reflection by facets that face v,
+ * without F; *c is the cosine at the facet. */
+ASP_FN asp_real by_reflection(const asp_shape *k, asp_v3 v, asp_v3 w, int inside, asp_real seen,
+                              asp_real *c)
+{
+    asp_v3 m = aspi_half_vector(v, facing(w, !inside));
+    *c = aspi_dot(v, m);
+    return *c <= R(0.0) || m.z <= R(0.0) ? R(0.0) : R(0.25) * ASPI_CALL(asp_D)(k, m) / seen;
+}
+
+/* The same after refraction to the other side; eta as seen from v. From inside everything is turned
+ * round, so that v faces m as outside. */
+ASP_FN asp_real by_refraction(const asp_shape *k, asp_v3 v, asp_v3 w, int inside, asp_real eta,
+                              asp_real seen, asp_real *c)
+{
+    asp_v3 away = inside ? negate(w) : w;
+    asp_v3 m = aspi_bent_half(v, away, eta);
+    asp_real wm = aspi_dot(away, m);
+    *c = aspi_dot(v, m);
+    if (*c <= R(0.0) || wm >= R(0.0) || m.z <= R(0.0))
+        return R(0.0);
+    return facet_phase(k, v, m, seen) * aspi_bent_density(*c, wm, eta);
+}
+
+/* The share of light that one meeting with facets sends from v to the direction w of travel, which is
+ * inside where to_inside; mirrors and dielectrics. */
+ASP_FN asp_c3 facet_sends(const walker *r, asp_v3 v, asp_v3 w, int to_inside, asp_real seen)
+{
+    const asp_mat *mat = r->mat;
+    asp_real F[3], c, p;
+    asp_c3 out;
+    if (mat->model->facets == ASPI_FACETS_REFRACT) {
+        asp_real eta = r->inside ? R(1.0) / mat->c.r : mat->c.r;
+        if (to_inside != r->inside) {
+            p = by_refraction(&mat->ndf, v, w, r->inside, eta, seen, &c);
+            p *= R(1.0) - aspi_fresnel_dielectric(c, eta);
+        } else {
+            p = by_reflection(&mat->ndf, v, w, r->inside, seen, &c);
+            p *= aspi_fresnel_dielectric(c, eta);
+        }
+        out.r = out.g = out.b = p;
+        return out;
+    }
+    p = by_reflection(&mat->ndf, v, w, 0, seen, &c);
+    aspi_fresnel(mat, c, F);
+    out.r = F[0] * p;
+    out.g = F[1] * p;
+    out.b = F[2] * p;
+    return out;
+}
+
+ASP_FN void add_scaled(asp_c3 *sum, asp_c3 a, asp_c3 b, asp_real by)
+{
+    sum->r += a.r * b.r * by;
+    sum->g += a.g * b.g * by;
+    sum->b += a.b * b.b * by;
+}
+
+/* What goes to wo by way of one wall, arriving there in direction d on side `inside` and changed by
+ * `by` at the wall: the flight there is played, the rest is expected. */
+ASP_FN void by_wall(const walker *r, asp_v3 v, asp_real seen, asp_v3 d, int inside, asp_c3 by, asp_v3 wo,
+                    asp_c3 *sum)
+{
+    const asp_shape *k = &r->mat->ndf;
+    int out = wo.z < R(0.0);
+    asp_v3 f = facing(d, inside);
+    asp_real all = area(k, f), share = walls_seen(k, f) / aspi_max(all, ASP_SMALLEST);
+    walker side = *r;
+    asp_c3 sent;
+    if (share <= R(0.0))
+        return;
+    sent = facet_sends(r, v, d, inside, seen);
+    side.d = d;
+    if (inside != r->inside)
+        side.q = R(1.0) - side.q;
+    side.inside = inside;
+    if (!fly(&side, all))
+        return;
+    if (inside != out)
+        side.q = R(1.0) - side.q;
+    share *= leaves(k, wo, out, side.q);
+    sent.r *= by.r;
+    sent.g *= by.g;
+    sent.b *= by.b;
+    add_scaled(sum, r->carried, sent, share);
+}
+
+/* All ways to wo with one wall last: mirrored in it, and for dielectrics refracted by it. */
+ASP_FN void by_walls(const walker *r, asp_v3 v, asp_real seen, asp_v3 wo, asp_c3 *sum)
+{
+    const asp_mat *mat = r->mat;
+    asp_v3 n = wall_normal(&mat->ndf), toward;
+    int out = wo.z < R(0.0);
+    asp_real c, F[3], eta, f;
+    asp_c3 by;
+    if (mat->ndf.map.tx == R(0.0) && mat->ndf.map.ty == R(0.0))
+        return;
+    n = facing(n, !out);                 /* towards the side of wo */
+    c = aspi_dot(wo, n);
+    if (c <= R(0.0))
+        return;
+    if (mat->model->facets != ASPI_FACETS_REFRACT) {
+        aspi_fresnel(mat, c, F);
+        by.r = F[0];
+        by.g = F[1];
+        by.b = F[2];
+        by_wall(r, v, seen, negate(aspi_reflect(wo, n)), out, by, wo, sum);
+        return;
+    }
+    eta = out ? R(1.0) / mat->c.r : mat->c.r;
+    f = aspi_fresnel_dielectric(c, eta);
+    by.r = by.g = by.b = f;
+    by_wall(r, v, seen, negate(aspi_reflect(wo, n)), out, by, wo, sum);
+    if (f < R(1.0)) {
+        asp_v3 t = aspi_refract(wo, n, eta);
+        asp_real ct = aspi_abs(aspi_dot(t, n));
+        toward = negate(t);
+        /* solid angles before and after: Snell's law */
+        by.r = by.g = by.b = (R(1.0) - f) * c / (eta * eta * aspi_max(ct, ASP_SMALLEST));
+        by_wall(r, v, seen, toward, !out, by, wo, sum);
+    }
+}
+
+/* Adds what this meeting sends to wo: by the facet m if it is diffuse, else by all that face v, and by
+ * those and then a wall. `first`: nothing was met before, so that the way out is averaged
+ * over heights: rate_i / (rate_i + rate_o) instead of q^rate_o. */
+ASP_FN void connect(const walker *r, asp_v3 v, asp_v3 m, asp_real seen, asp_v3 wo, int first,
+                    asp_c3 *sum)
+{
+    const asp_mat *mat = r->mat;
+    const asp_shape *k = &mat->ndf;
+    int out = wo.z < R(0.0);
+    asp_real open;
+    if (out && mat->model->facets != ASPI_FACETS_REFRACT)
+        return;
+    if (first && out == r->inside) {
+        asp_real height = aspi_abs(wo.z), over = area(k, facing(wo, out)) * aspi_abs(r->d.z);
+        open = seen * height / (seen * height + over);
+    } else {
+        open = leaves(k, wo, out, out == r->inside ? r->q : R(1.0) - r->q);
+    }
+    if (mat->model->facets == ASPI_FACETS_DIFFUSE) {
+        asp_c3 by = mat->a;
+        add_scaled(sum, r->carried, by, aspi_max(aspi_dot(m, wo), R(0.0)) * R(1.0 / ASP_PI) * open);
+        return;
+    }
+    add_scaled(sum, r->carried, facet_sends(r, v, wo, out, seen), open);
+    by_walls(r, v, seen, wo, sum);
+}
+
+/* Roulette: walks go on with the probability of what they carry, so that none is cut short. */
+ASP_FN int survives(walker *r, int met)
+{
+    asp_real most = aspi_max(r->carried.r, aspi_max(r->carried.g, r->carried.b)), p;
+    if (most <= R(0.0) || met >= ASPI_WALK_LONGEST)
+        return 0;
+    if (met < ASPI_WALK_SURE)
+        return 1;
+    p = aspi_min(most, R(1.0));
+    if (uniform(r) >= p)
+        return 0;
+    r->carried.r /= p;
+    r->carried.g /= p;
+    r->carried.b /= p;
+    return 1;
+}
+
+ASP_FN walker start_walk(const asp_mat *mat, asp_v3 wi, asp_uniforms *next, void *state)
+{
+    walker r;
+    r.mat = mat;
+    r.next = next;
+    r.state = state;
+    r.d = negate(wi);
+    r.inside = wi.z < R(0.0);
+    r.q = R(1.0);
+    r.carried.r = r.carried.g = r.carried.b = R(1.0);
+    return r;
+}
+
+/* Radiance is denser inside by the square of the index; importance is not. */
+ASP_FN asp_real crossing(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
+{
+    asp_real eta = mat->c.r;
+    if (mat->model->facets != ASPI_FACETS_REFRACT || wi.z * wo.z >= R(0.0)
+        || mat->transport == ASP_IMPORTANCE)
+        return R(1.0);
+    return wi.z > R(0.0) ? R(1.0) / (eta * eta) : eta * eta;
+}
+
+/* Is there anything to walk on: facets known, wi on a side where light can be? */
+ASP_FN int walkable(const asp_mat *mat, asp_v3 wi)
+{
+    int kind = mat->model->facets;
+    if (kind == ASPI_FACETS_REFRACT && mat->a.r > R(0.0))
+        return 0; /* a thin sheet has no inside */
+    return kind != ASPI_FACETS_NONE && (wi.z > R(0.0) || (wi.z < R(0.0) && kind == ASPI_FACETS_REFRACT));
+}
+
+asp_c3 ASPI_CALL(asp_walk_eval_cos)(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_uniforms *next,
+                                    void *state)
+{
+    walker r = start_walk(mat, wi, next, state);
+    asp_real nothing = (wi.x + wi.y + wi.z + wo.x + wo.y + wo.z) * R(0.0), by;
+    asp_c3 sum;
+    int met, wall;
+    sum.r = sum.g = sum.b = nothing;
+    if (!walkable(mat, wi) || nothing != R(0.0) || wo.z == R(0.0))
+        return sum;
+    for (met = 0;; met++) {
+        asp_v3 v = facing(r.d, r.inside), m;
+        asp_real seen = area(&mat->ndf, v);
+        if (!fly(&r, seen))
+            break;
+        m = next_normal(&r, v, seen, &wall);
+        connect(&r, v, m, seen, wo, met == 0, &sum);
+        scatter(&r, m);
+        if (!survives(&r, met + 1))
+            break;
+    }
+    by = crossing(mat, wi, wo);
+    sum.r *= by;
+    sum.g *= by;
+    sum.b *= by;
+    return sum;
+}
+
+asp_sampled ASPI_CALL(asp_walk_sample)(const asp_mat *mat, asp_v3 wi, asp_uniforms *next, void *state)
+{
+    walker r = start_walk(mat, wi, next, state);
+    asp_real nothing = (wi.x + wi.y + wi.z) * R(0.0), by;
+    asp_sampled out;
+    int met, wall, is_out = 0;
+    out.wo = wi;
+    out.pdf = out.weight.r = out.weight.g = out.weight.b = nothing;
+    if (!walkable(mat, wi) || nothing != R(0.0))
+        return out;
+    for (met = 0; !is_out; met++) {
+        asp_v3 v = facing(r.d, r.inside);
+        asp_real seen = area(&mat->ndf, v);
+        if (met && !survives(&r, met))
+            return out;
+        is_out = !fly(&r, seen);
+        if (!is_out)
+            scatter(&r, next_normal(&r, v, seen, &wall));
+    }
+    by = crossing(mat, wi, r.d);
+    out.wo = r.d;
+    out.pdf = ASPI_CALL(asp_walk_pdf)(mat, wi, r.d);
+    out.weight.r = r.carried.r * by;
+    out.weight.g = r.carried.g * by;
+    out.weight.b = r.carried.b * by;
+    return out;
+}
+
+/* One meeting exactly, the rest as if it came out diffusely: what the first does not let out. */
+asp_real ASPI_CALL(asp_walk_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
+{
+    walker r = start_walk(mat, wi, 0, 0);
+    asp_v3 v = facing(r.d, r.inside);
+    int out = wo.z < R(0.0);
+    asp_real seen, once, first, height = aspi_abs(wo.z), c, eta;
+    if (!walkable(mat, wi) || wo.z == R(0.0)
+        || (out && mat->model->facets != ASPI_FACETS_REFRACT))
+        return (wi.x + wo.x) * R(0.0);
+    seen = area(&mat->ndf, v);
+    /* facets level on average let out 1/(1 + hidden part) of what meets them once */
+    first = aspi_abs(wi.z) / seen;
+    first = R(0.9) * first + R(0.05);
+    eta = r.inside ? R(1.0) / mat->c.r : mat->c.r;
+    if (mat->model->facets == ASPI_FACETS_DIFFUSE)
+        return height * R(1.0 / ASP_PI);
+    if (mat->model->facets != ASPI_FACETS_REFRACT) {
+        once = by_reflection(&mat->ndf, v, wo, 0, seen, &c);
+        return first * once + (R(1.0) - first) * height * R(1.0 / ASP_PI);
+    }
+    if (out == r.inside) {
+        once = by_reflection(&mat->ndf, v, wo, r.inside, seen, &c);
+        once *= aspi_fresnel_dielectric(c, eta);
+    } else {
+        once = by_refraction(&mat->ndf, v, wo, r.inside, eta, seen, &c);
+        once *= R(1.0) - aspi_fresnel_dielectric(c, eta);
+    }
+    return first * once + (R(1.0) - first) * height * R(0.5 / ASP_PI);
+}
+#endif
