@@ -273,12 +273,15 @@ typedef struct asp_bsdf asp_bsdf;        /* what a scattering model is: see aspe
  * f(wi, wo) = f(wo, wi) eta_o^2/eta_i^2 there. */
 typedef enum asp_transport { ASP_RADIANCE = 0, ASP_IMPORTANCE = 1 } asp_transport;
 
+#define ASP_ENERGY_NUMBERS 256
+
 typedef struct asp_material {
     const asp_bsdf *model;
     int     mask;                         /* asp_mask */
     int     fresnel;                      /* which Fresnel term the numbers below are for */
     int     transport;                    /* asp_transport */
     asp_rgb a, b, c, d;                   /* the model's colours; see its record */
+    double  energy[ASP_ENERGY_NUMBERS];   /* what the model prepared */
     asp_ndf ndf;
 } asp_material;
 
@@ -377,6 +380,7 @@ typedef struct asp_materialf {
     int      fresnel;
     int      transport;
     asp_rgbf a, b, c, d;
+    float    energy[ASP_ENERGY_NUMBERS];
     asp_ndff ndf;
 } asp_materialf;
 

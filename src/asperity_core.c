@@ -8,13 +8,11 @@
 #pragma GCC optimize("fp-contract=off", "no-math-errno", "no-trapping-math")
 #endif
 
-#include "core/convert.c"
+#include "core/energy.c"
 #undef ASP_PRECISION
 #include "core/error.c"
 #undef ASP_PRECISION
 #include "core/facets.c"
-#undef ASP_PRECISION
-#include "core/filter.c"
 #undef ASP_PRECISION
 #include "core/fresnel.c"
 #undef ASP_PRECISION
@@ -36,11 +34,15 @@
 #undef ASP_PRECISION
 #include "core/walk.c"
 #undef ASP_PRECISION
+#include "bsdf/compensated.c"
+#undef ASP_PRECISION
 #include "bsdf/conductor.c"
 #undef ASP_PRECISION
 #include "bsdf/dielectric.c"
 #undef ASP_PRECISION
 #include "bsdf/lambert_specular.c"
+#undef ASP_PRECISION
+#include "bsdf/plastic.c"
 #undef ASP_PRECISION
 #include "bsdf/rough_diffuse.c"
 #undef ASP_PRECISION

@@ -32,6 +32,8 @@ struct asp_bsdf {
     int facets;                       /* what a facet does with light, for walks */
     /* Reads the model's own keys and the Fresnel term's. */
     asp_status (*parse)(aspi_spec *spec, asp_material *out, asp_error *err);
+    /* Fills out->energy and derived colours, when distribution and keys are known; may be NULL. */
+    asp_status (*prepare)(asp_material *out, asp_error *err);
     /* f from F and from x = D G2 / (4 cos_i cos_o), with y multiplying what does not come from
      * facets; the caller may scale x and y alike. The loop's r, g, b hold F and receive f. */
     void (*value)(const asp_material *mat, double F_r, double F_g, double F_b, double x, double y,

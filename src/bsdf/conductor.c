@@ -23,8 +23,7 @@ static const aspi_bsdf_key conductor_keys[] = { ASPI_FRESNEL_KEYS, { NULL, NULL 
 
 ASP_RECORD asp_bsdf asp_bsdf_conductor = {
     "conductor", "Rough conductor", "Walter et al. 2007, eq. 20", conductor_keys, 0,
-    ASPI_FACETS_REFLECT, conductor_parse,
-    ASPI_BSDF_OPS(conductor)
+    ASPI_FACETS_REFLECT, conductor_parse, NULL, ASPI_BSDF_OPS(conductor)
 };
 
 #else

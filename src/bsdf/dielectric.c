@@ -50,7 +50,7 @@ static const aspi_bsdf_key dielectric_keys[] = {
 
 ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
     "dielectric", "Rough dielectric", "Walter et al. 2007, eqs. 20-21", dielectric_keys, 0,
-    ASPI_FACETS_REFRACT, dielectric_parse, ASPI_BSDF_OWN(dielectric)
+    ASPI_FACETS_REFRACT, dielectric_parse, NULL, ASPI_BSDF_OWN(dielectric)
 };
 
 #else

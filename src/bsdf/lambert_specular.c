@@ -33,7 +33,7 @@ static const aspi_bsdf_key lambert_specular_keys[] = {
 
 ASP_RECORD asp_bsdf asp_bsdf_lambert_specular = {
     "lambert_specular", "Lambert + rough reflection", "Ribardiere et al. 2017, section 5",
-    lambert_specular_keys, 1, ASPI_FACETS_NONE, lambert_specular_parse,
+    lambert_specular_keys, 1, ASPI_FACETS_NONE, lambert_specular_parse, NULL,
     ASPI_BSDF_OPS(lambert_specular)
 };
 

@@ -32,6 +32,7 @@ static asp_status rough_diffuse_parse(aspi_spec *spec, asp_material *out, asp_er
     asp_status s;
     size_t i = 0;
     out->a.r = out->a.g = out->a.b = 0.8;
+    out->b.r = ROUGH_EXACT;
     s = aspi_spec_colour(spec, "albedo", 0.0, 0, 1.0, &out->a, NULL, err);
     if (s || (item = aspi_spec_find(spec, "form")) == NULL)
         return s;
@@ -53,7 +54,7 @@ static const aspi_bsdf_key rough_diffuse_keys[] = {
 
 ASP_RECORD asp_bsdf asp_bsdf_rough_diffuse = {
     "rough_diffuse", "Lambertian facets", "Heitz et al. 2016, sec. 5.3; Oren, Nayar 1994",
-    rough_diffuse_keys, 0, ASPI_FACETS_DIFFUSE, rough_diffuse_parse, ASPI_BSDF_OWN(rough_diffuse)
+    rough_diffuse_keys, 0, ASPI_FACETS_DIFFUSE, rough_diffuse_parse, NULL, ASPI_BSDF_OWN(rough_diffuse)
 };
 
 #else

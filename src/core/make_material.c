@@ -198,6 +198,8 @@ asp_status asp_material_parse(const asp_model *const *models, const char *text, 
         s = model->parse(&spec, &mat, err);
     if (!s)
         s = aspi_spec_rest(&spec, "unknown key of this material (asperity list)", err);
+    if (!s && model->prepare)
+        s = model->prepare(&mat, err);
     if (!s)
         *out = mat;
     return s;
@@ -215,6 +217,7 @@ static asp_rgbf narrow_rgb(asp_rgb c)
 asp_materialf asp_material_narrow(const asp_material *mat)
 {
     asp_materialf out;
+    size_t i;
     out.model = mat->model;
     out.mask = mat->mask;
     out.fresnel = mat->fresnel;
@@ -223,6 +226,8 @@ asp_materialf asp_material_narrow(const asp_material *mat)
     out.b = narrow_rgb(mat->b);
     out.c = narrow_rgb(mat->c);
     out.d = narrow_rgb(mat->d);
+    for (i = 0; i < ASP_ENERGY_NUMBERS; i++)
+        out.energy[i] = (float)mat->energy[i];
     out.ndf = asp_ndf_narrow(&mat->ndf);
     return out;
 }
