@@ -258,6 +258,22 @@ typedef struct asp_metal { const char *name, *source; asp_rgb eta, k, f0; } asp_
 const asp_metal *asp_metals(size_t *count);
 const asp_metal *asp_find_metal(const char *name);        /* "Au", "Ag", ...; NULL if none */
 
+/* n and k of a metal of asp_metals() at a wavelength in nm, [380, 780], linear between 10 nm steps. */
+asp_status asp_metal_index(const asp_metal *metal, double nm, double *eta, double *k, asp_error *err);
+
+/* Linear sRGB of a spectral reflectance in [0, 1] under D65, CIE 1931; 1 at every wavelength is white. */
+typedef double asp_reflectance(const void *context, double nm);
+asp_rgb asp_rgb_of_reflectance(asp_reflectance *reflectance, const void *context);
+
+/* A film of index film_eta (relative to the exterior, like eta and k below it) and `thickness` nm, seen at
+ * wavelength nm: Airy's sum of all reflections, unpolarised. Thickness 0 is the bare surface. */
+double asp_fresnel_film(double c, double film_eta, double thickness, double eta, double k, double nm);
+
+/* F82-tint's two numbers of a conductor: exact at normal incidence and at 82 degrees. And back: f0 in
+ * (0, 1); ASP_EINVAL with the range of tint where no eta + i k has this pair. */
+void asp_f82_of_index(double eta, double k, double *f0, double *tint);
+asp_status asp_index_of_f82(double f0, double tint, double *eta, double *k, asp_error *err);
+
 /* ------------------------------------------------------------------ 7  Materials
  *
  * A scattering model over a distribution. Spec grammar: `model:key=value,...` where a value may be
@@ -299,6 +315,10 @@ asp_material asp_conductor(const asp_ndf *ndf, asp_rgb eta, asp_rgb k, int mask)
  * fitted in the STD paper: f = diffuse/pi + specular F D G / (4 cos cos). */
 asp_material asp_lambert_specular(const asp_ndf *ndf, asp_rgb diffuse, asp_rgb specular, double eta,
                                   int mask);
+
+/* The conductor of mat's distribution and masking at n wavelengths: f with eta[i] + i k[i]. */
+void asp_eval_spectrum(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, size_t n, const double *eta,
+                       const double *k, double *out);
 
 typedef struct asp_bsdf_sample {
     asp_vec3 wo;

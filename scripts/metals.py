@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Prints src/core/metals_table.h: metals as linear sRGB eta + i k.
+"""Prints src/core/metals_table.h: metals as linear sRGB eta + i k; with --spectrum
+src/core/metals_spectrum.h: n and k, and what each wavelength gives to linear sRGB.
 
 For each metal the conductor Fresnel term is evaluated per wavelength from measured n, k, weighted
 with D65 and the CIE 1931 observer, taken to linear sRGB (a perfect mirror is 1, 1, 1), and each
@@ -46,7 +47,53 @@ def fresnel(cosine, n, k):
     return 0.5 * (abs(s) ** 2 + abs(p) ** 2)
 
 
+def spectrum():
+    """Every 10 nm from 380 to 780: weights of linear sRGB under D65, then n and k of each metal."""
+    head, rows = table("ior/ior_5nm_360_830.csv")
+    wave = np.array([number(r[0]) for r in rows])
+    _, cie = table("cie/cie1931_2deg_1nm.csv")
+    cie = np.array([[float(x) for x in r] for r in cie])
+    _, d65 = table("cie/d65_300_830.csv")
+    d65 = np.array([[float(x) for x in r] for r in d65])
+    nm = np.arange(380, 781, 10)
+    # hat functions of 10 nm over the 1 nm table: the weights of piecewise linear spectra
+    fine = np.arange(380, 781)
+    light = np.stack([np.interp(fine, cie[:, 0], cie[:, i]) for i in (1, 2, 3)])
+    light = TO_SRGB @ (light * np.interp(fine, d65[:, 0], d65[:, 1]))
+    hats = np.maximum(0.0, 1.0 - np.abs(fine[None, :] - nm[:, None]) / 10.0)
+    weights = hats @ light.T
+    weights /= weights.sum(axis=0)
+
+    def rows_of(values, per_line):
+        text = [f"{v:.6g}" for v in values]
+        for i in range(0, len(text), per_line):
+            print("    " + ", ".join(text[i:i + per_line]) + ",")
+
+    print("/* metals_spectrum.h - printed by scripts/metals.py --spectrum from tables of refractiveindex.info\n"
+          " * (CC0) and of the CIE: every 10 nm from 380 to 780 */")
+    print("static const double rgb_weights[3][SPECTRUM] = {")
+    for c in range(3):
+        print("  {")
+        rows_of(weights[:, c], 9)
+        print("  },")
+    print("};\n\n/* n, then k, in the order of the metals */\nstatic const double metal_index[][2][SPECTRUM] = {")
+    for name, column, _ in METALS:
+        i = head.index(column + ":n")
+        print("  {   /* " + name + " */")
+        for j in (i, i + 1):
+            values = np.array([number(r[j]) for r in rows])
+            ok = ~np.isnan(values)
+            print("  {")
+            rows_of(np.interp(nm, wave[ok], values[ok]), 10)
+            print("  },")
+        print("  },")
+    print("};")
+
+
 def main():
+    if sys.argv[1:] == ["--spectrum"]:
+        spectrum()
+        return
     head, rows = table("ior/ior_5nm_360_830.csv")
     wave = np.array([number(r[0]) for r in rows])
     _, cie = table("cie/cie1931_2deg_1nm.csv")

@@ -32,6 +32,8 @@
 #undef ASP_PRECISION
 #include "core/spec.c"
 #undef ASP_PRECISION
+#include "core/spectrum.c"
+#undef ASP_PRECISION
 #include "core/walk.c"
 #undef ASP_PRECISION
 #include "bsdf/compensated.c"
