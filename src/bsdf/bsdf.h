@@ -12,7 +12,8 @@ enum {
     ASPI_FRESNEL_ONE,          /* 1 */
     ASPI_FRESNEL_CONDUCTOR,    /* c = eta, d = k */
     ASPI_FRESNEL_F82,          /* c = f0, d = tint */
-    ASPI_FRESNEL_DIELECTRIC    /* c.r = eta */
+    ASPI_FRESNEL_DIELECTRIC,   /* c.r = eta */
+    ASPI_FRESNEL_FILM          /* a table in energy, from ENERGY_FILM on (bsdf/energy.h) */
 };
 
 /* What a facet does with light. */
@@ -67,6 +68,9 @@ struct asp_bsdf {
 /* transport=radiance|importance into out->transport. */
 asp_status aspi_parse_transport(aspi_spec *spec, asp_material *out, asp_error *err);
 
+/* Fills the film's table: linear sRGB reflectance over the cosine. metal: NULL for out->c + i out->d. */
+void aspi_film_prepare(asp_material *out, const asp_metal *metal, double film_eta, double thickness);
+
 /* The keys that name a Fresnel term: metal, eta with k, eta alone, f0 with tint. `initial` is taken
  * when none is given. */
 asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material *out,
@@ -76,7 +80,9 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
     { "eta", "index of refraction, interior over exterior; with k that of a conductor" }, \
     { "k", "extinction coefficient" }, \
     { "f0", "reflectance at normal incidence, Schlick's term" }, \
-    { "tint", "with f0: factor at 82 degrees (F82-tint), 1 = Schlick" }
+    { "tint", "with f0: factor at 82 degrees (F82-tint), 1 = Schlick" }, \
+    { "film", "thickness in nm of a thin film on it, up to 10000" }, \
+    { "film_eta", "index of the film, 1 to 10, default 1.33" }
 
 /* The formulas of a record, in the order of struct asp_bsdf. */
 #define ASPI_BSDF_OPS(n) n##_value_1_64, n##_value_1_32, n##_value_n_64, n##_value_n_32, \

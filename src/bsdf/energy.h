@@ -8,13 +8,15 @@
 #include "bsdf/bsdf.h"
 #define ENERGY_ROWS 20
 #define ENERGY_COLUMNS 8
+#define ENERGY_FILM_NODES 31
 enum {
     ENERGY_TABLE = 0,
     ENERGY_MEAN = ENERGY_ROWS * ENERGY_COLUMNS,      /* mean of E, cosine-weighted */
     ENERGY_COUNT,                                    /* columns in use */
-    ENERGY_FREE                                      /* from here on the model's own */
+    ENERGY_FILM,                                     /* a film's colour over the cosine */
+    ENERGY_END = ENERGY_FILM + 3 * ENERGY_FILM_NODES
 };
-#if ENERGY_ROWS * ENERGY_COLUMNS + 2 > ASP_ENERGY_NUMBERS
+#if ENERGY_ROWS * ENERGY_COLUMNS + 2 + 3 * ENERGY_FILM_NODES > ASP_ENERGY_NUMBERS
 #error "asp_material.energy is too small"
 #endif
 

@@ -1,10 +1,12 @@
 /* facet_fresnel.h - the Fresnel term of a material, in both precisions */
 
 #include "asperity/fresnel.h"
+#include "bsdf/energy.h"
 
 #ifndef ASPI_FACET_FRESNEL_NAMES
 #define ASPI_FACET_FRESNEL_NAMES
 #define aspi_fresnel ASP_NAME(aspi_fresnel)
+#define aspi_fresnel_film ASP_NAME(aspi_fresnel_film)
 #endif
 
 #if (ASP_PRECISION == 64 && !defined(ASPI_FACET_FRESNEL_64)) || \
@@ -14,6 +16,23 @@
 #else
 #define ASPI_FACET_FRESNEL_32
 #endif
+
+/* Cubic through four nodes of a channel (Lagrange). */
+ASP_FN asp_real aspi_fresnel_film(const asp_real *f, asp_real c)
+{
+    asp_real x = aspi_unit_cosine(c) * R(ENERGY_FILM_NODES - 1), d, y;
+    int i = (int)(x == x ? x : R(0.0));
+    i = i < 1 ? 1 : i;
+    i = i > ENERGY_FILM_NODES - 3 ? ENERGY_FILM_NODES - 3 : i;
+    d = x - R(i);
+    f += i - 1;
+    y = f[0] * (R(-1.0 / 6.0) * d * (d - R(1.0)) * (d - R(2.0)))
+      + f[1] * (R(0.5) * (d + R(1.0)) * (d - R(1.0)) * (d - R(2.0)))
+      + f[2] * (R(-0.5) * (d + R(1.0)) * d * (d - R(2.0)))
+      + f[3] * (R(1.0 / 6.0) * (d + R(1.0)) * d * (d - R(1.0)));
+    y = y < R(0.0) ? R(0.0) : y;
+    return y > R(1.0) ? R(1.0) : y;
+}
 
 /* Numbers go by pointer: small structs of floats stall in the usual calling convention. */
 ASP_FN void aspi_fresnel(const asp_mat *mat, asp_real c, asp_real F[3])
@@ -31,6 +50,11 @@ ASP_FN void aspi_fresnel(const asp_mat *mat, asp_real c, asp_real F[3])
         break;
     case ASPI_FRESNEL_DIELECTRIC:
         F[0] = F[1] = F[2] = aspi_fresnel_dielectric(c, mat->c.r);
+        break;
+    case ASPI_FRESNEL_FILM:
+        F[0] = aspi_fresnel_film(mat->energy + ENERGY_FILM, c);
+        F[1] = aspi_fresnel_film(mat->energy + ENERGY_FILM + ENERGY_FILM_NODES, c);
+        F[2] = aspi_fresnel_film(mat->energy + ENERGY_FILM + 2 * ENERGY_FILM_NODES, c);
         break;
     default:
         F[0] = F[1] = F[2] = c == c ? R(1.0) : c;

@@ -69,6 +69,7 @@ void aspi_energy_prepare(asp_material *out)
     lobe.fresnel = out->fresnel;
     lobe.c = out->c;
     lobe.d = out->d;
+    memcpy(lobe.energy + ENERGY_FILM, out->energy + ENERGY_FILM, 3 * ENERGY_FILM_NODES * sizeof(double));
     for (j = 0; j < columns; j++) {
         double *e = out->energy + j * ENERGY_ROWS;
         asp_vec2 at = aspi_sincos2pi((double)j / columns);

@@ -62,7 +62,8 @@ asp_material asp_lambert_specular(const asp_ndf *ndf, asp_rgb diffuse, asp_rgb s
     return mat;
 }
 
-static asp_status parse_metal(aspi_spec *spec, asp_material *out, asp_error *err)
+static asp_status parse_metal(aspi_spec *spec, asp_material *out, const asp_metal **found,
+                              asp_error *err)
 {
     aspi_item *item = aspi_spec_find(spec, "metal");
     char name[16];
@@ -78,11 +79,12 @@ static asp_status parse_metal(aspi_spec *spec, asp_material *out, asp_error *err
     out->fresnel = ASPI_FRESNEL_CONDUCTOR;
     out->c = metal->eta;
     out->d = metal->k;
+    *found = metal;
     return ASP_OK;
 }
 
-asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material *out,
-                              asp_error *err)
+static asp_status parse_bare(aspi_spec *spec, double initial_eta, asp_material *out,
+                             const asp_metal **metal, asp_error *err)
 {
     int has_metal = aspi_spec_find(spec, "metal") != NULL, has_eta, has_k, has_f0, has_tint;
     asp_rgb eta = grey(initial_eta), k = grey(0.0), f0 = grey(1.0), tint = grey(1.0);
@@ -99,7 +101,7 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
         return aspi_spec_fail(spec, spec->text, ASP_EINVAL, "metal", 5,
                               "give one of metal, eta (with k), or f0 (with tint)", err);
     if (has_metal)
-        return parse_metal(spec, out, err);
+        return parse_metal(spec, out, metal, err);
     if ((has_k && !has_eta) || (has_tint && !has_f0))
         return aspi_spec_fail(spec, spec->text, ASP_EINVAL, has_k ? "k" : "tint", has_k ? 1 : 4,
                               has_k ? "k needs eta" : "tint needs f0", err);
@@ -120,6 +122,42 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
         out->fresnel = eta.r > 0.0 ? ASPI_FRESNEL_DIELECTRIC : ASPI_FRESNEL_ONE;
         out->c = eta;
     }
+    return ASP_OK;
+}
+
+/* A number of the spec within [low, high]. */
+static asp_status parse_number(aspi_spec *spec, const char *key, double low, int low_open, double high,
+                               double *out, int *found, asp_error *err)
+{
+    asp_status s = aspi_spec_number(spec, key, out, found, err);
+    if (!s && *found && !(*out <= high && (low_open ? *out > low : *out >= low))) {
+        asp_fail_range(err, key, *out, low, low_open, high);
+        s = aspi_spec_blame(spec, key, ASP_EINVAL, err);
+    }
+    return s;
+}
+
+asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material *out,
+                              asp_error *err)
+{
+    const asp_metal *metal = NULL;
+    double thickness = 0.0, film_eta = 1.33;
+    int has_film, has_eta;
+    asp_status s = parse_bare(spec, initial_eta, out, &metal, err);
+    if (!s)
+        s = parse_number(spec, "film", 0.0, 1, 1e4, &thickness, &has_film, err);
+    if (!s)
+        s = parse_number(spec, "film_eta", 1.0, 0, 10.0, &film_eta, &has_eta, err);
+    if (s || !(has_film || has_eta))
+        return s;
+    if (!has_film)
+        return aspi_spec_fail(spec, spec->text, ASP_EINVAL, "film", 4, "film_eta needs film, a thickness", err);
+    if (out->fresnel != ASPI_FRESNEL_CONDUCTOR && out->fresnel != ASPI_FRESNEL_DIELECTRIC)
+        return aspi_spec_fail(spec, spec->text, ASP_EINVAL, "film", 4,
+                              "a film needs metal or eta beneath it", err);
+    if (out->fresnel == ASPI_FRESNEL_DIELECTRIC)
+        out->c.g = out->c.b = out->c.r;
+    aspi_film_prepare(out, metal, film_eta, thickness);
     return ASP_OK;
 }
 

@@ -15,6 +15,7 @@
 #else
 #include "core/blocks.h"
 #include "bsdf/bsdf_number.h"
+#include "bsdf/facet_fresnel.h"
 #include "core/reflection.h"
 
 #ifndef ASPI_MATERIAL_BATCH_NAMES
@@ -38,6 +39,7 @@
 #define loop_mixed_direction ASP_NAME(loop_mixed_direction)
 #define loop_mixed_parts ASP_NAME(loop_mixed_parts)
 #define loop_one ASP_NAME(loop_one)
+#define loop_film ASP_NAME(loop_film)
 #define loop_conductor ASP_NAME(loop_conductor)
 #define loop_f82 ASP_NAME(loop_f82)
 #define loop_dielectric ASP_NAME(loop_dielectric)
@@ -195,6 +197,13 @@ ASP_FN void loop_dielectric(size_t n, asp_real eta, IN c, OUT F)
         F[i] = aspi_fresnel_dielectric(c[i], eta);
 }
 
+ASP_FN void loop_film(size_t n, const asp_real *table, IN c, OUT F)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        F[i] = aspi_fresnel_film(table, c[i]);
+}
+
 ASP_FN void loop_one(size_t n, IN c, OUT F)
 {
     size_t i;
@@ -222,6 +231,11 @@ ASP_FN void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c, asp_r
         loop_dielectric(n, mat->c.r, c, r);
         memcpy(g, r, n * sizeof *r);
         memcpy(b, r, n * sizeof *r);
+        break;
+    case ASPI_FRESNEL_FILM:
+        loop_film(n, mat->energy + ENERGY_FILM, c, r);
+        loop_film(n, mat->energy + ENERGY_FILM + ENERGY_FILM_NODES, c, g);
+        loop_film(n, mat->energy + ENERGY_FILM + 2 * ENERGY_FILM_NODES, c, b);
         break;
     default:
         loop_one(n, c, r);

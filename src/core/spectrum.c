@@ -1,6 +1,7 @@
 /* spectrum.c - reflectance by wavelength: metals, thin films, F82 and back; asperity.h section 6 */
 #define ASP_PRECISION 64
 #include "bsdf/bsdf.h"
+#include "bsdf/energy.h"
 #include "asperity/fresnel.h"
 
 #define SPECTRUM 41
@@ -112,6 +113,43 @@ double asp_fresnel_film(double c, double film_eta, double thickness, double eta,
         total += 0.5 * norm(quotient(add(r01, r12), add(make(1.0, 0.0), mul(r01, r12))));
     }
     return cosine <= 0.0 ? 1.0 : aspi_min(total, 1.0);
+}
+
+/* What aspi_film_prepare integrates over wavelengths. */
+typedef struct film {
+    const asp_metal *metal;
+    double c, film_eta, thickness, eta, k;
+} film;
+
+static double film_reflectance(const void *context, double nm)
+{
+    const film *f = (const film *)context;
+    double eta = f->eta, k = f->k;
+    if (f->metal)
+        asp_metal_index(f->metal, nm, &eta, &k, NULL);
+    return asp_fresnel_film(f->c, f->film_eta, f->thickness, eta, k, nm);
+}
+
+void aspi_film_prepare(asp_material *out, const asp_metal *metal, double film_eta, double thickness)
+{
+    const double eta[3] = { out->c.r, out->c.g, out->c.b }, k[3] = { out->d.r, out->d.g, out->d.b };
+    int i, channel;
+    for (i = 0; i < ENERGY_FILM_NODES; i++)
+        for (channel = 0; channel < 3; channel++) {
+            film f;
+            asp_rgb colour;
+            double value;
+            f.metal = metal;
+            f.c = (double)i / (ENERGY_FILM_NODES - 1);
+            f.film_eta = film_eta;
+            f.thickness = thickness;
+            f.eta = eta[channel];
+            f.k = k[channel];
+            colour = asp_rgb_of_reflectance(film_reflectance, &f);
+            value = channel == 0 ? colour.r : channel == 1 ? colour.g : colour.b;
+            out->energy[ENERGY_FILM + channel * ENERGY_FILM_NODES + i] = aspi_min(aspi_max(value, 0.0), 1.0);
+        }
+    out->fresnel = ASPI_FRESNEL_FILM;
 }
 
 /* ---- F82 <-> n, k */
