@@ -336,6 +336,11 @@ asp_bsdf_sample asp_sample(const asp_material *mat, asp_vec3 wi, double u1, doub
  * of the bits of u1 and u2. Models with one lobe do not use it. */
 asp_bsdf_sample asp_sample_lobe(const asp_material *mat, asp_vec3 wi, double u1, double u2, double u3);
 
+/* Reflection by visible normals that leaves out most of those that send light down (Eto, Tokuyoshi 2023):
+ * less variance on rough GGX. Conductors over ggx without mean slope; anything else as asp_sample does. */
+asp_bsdf_sample asp_sample_bounded(const asp_material *mat, asp_vec3 wi, double u1, double u2);
+double          asp_pdf_bounded(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
+
 /* ------------------------------------------------------------------ 8  Batches
  *
  * n elements, structure of arrays. Outputs may be inputs (in place); otherwise arrays must not
@@ -587,6 +592,8 @@ asp_bsdf_sample asp_walk_sample(const asp_material *mat, asp_vec3 wi, asp_unifor
  * wherever the walk can end, integrates to at most 1. */
 double asp_walk_pdf(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
 
+asp_bsdf_samplef asp_sample_boundedf(const asp_materialf *mat, asp_vec3f wi, float u1, float u2);
+float            asp_pdf_boundedf(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo);
 asp_rgbf asp_walk_eval_cosf(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo, asp_uniforms *next,
                             void *state);
 asp_bsdf_samplef asp_walk_samplef(const asp_materialf *mat, asp_vec3f wi, asp_uniforms *next, void *state);
