@@ -8,11 +8,17 @@
 #pragma GCC optimize("fp-contract=off", "no-math-errno", "no-trapping-math")
 #endif
 
+#include "core/bounded.c"
+#undef ASP_PRECISION
+#include "core/convert.c"
+#undef ASP_PRECISION
 #include "core/energy.c"
 #undef ASP_PRECISION
 #include "core/error.c"
 #undef ASP_PRECISION
 #include "core/facets.c"
+#undef ASP_PRECISION
+#include "core/filter.c"
 #undef ASP_PRECISION
 #include "core/fresnel.c"
 #undef ASP_PRECISION
