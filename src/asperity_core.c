@@ -34,6 +34,8 @@
 #undef ASP_PRECISION
 #include "core/ndf.c"
 #undef ASP_PRECISION
+#include "core/own_batch.c"
+#undef ASP_PRECISION
 #include "core/parse.c"
 #undef ASP_PRECISION
 #include "core/spec.c"

@@ -82,6 +82,11 @@
 /* Batches go in blocks of this many elements at most, about twenty arrays in use at a time: 20 KB. */
 #define ASP_BLOCK (ASP_PRECISION == 64 ? 128 : 256)
 
+/* A public call's name in this precision. */
+#define ASPI_CALL_64(x) x
+#define ASPI_CALL_32(x) ASP_PASTE(x, f)
+#define ASPI_CALL ASP_NAME(ASPI_CALL)
+
 #define ASP_PI 3.14159265358979323846
 #endif
 

@@ -1,9 +1,8 @@
 /* coat.h - what coat_calls.h needs; read before the model's own coat_rest and coat_share */
 
-#include "core/blocks.h"
 #include "bsdf/energy_at.h"
 #include "bsdf/facet_fresnel.h"
-#include "core/reflection.h"
+#include "bsdf/reflection.h"
 
 #ifndef ASPI_COAT_NAMES
 #define ASPI_COAT_NAMES

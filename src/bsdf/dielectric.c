@@ -56,9 +56,8 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #else
 #include "asperity/elementary.h"
 #include "bsdf/bsdf_number.h"
-#include "core/blocks.h"
-#include "core/reflection.h"
-#include "core/refraction.h"
+#include "bsdf/reflection.h"
+#include "bsdf/refraction.h"
 
 #ifndef DIELECTRIC_NAMES
 #define DIELECTRIC_NAMES

@@ -21,11 +21,10 @@
 ASP_FN asp_real aspi_fresnel_film(const asp_real *f, asp_real c)
 {
     asp_real x = aspi_unit_cosine(c) * R(ENERGY_FILM_NODES - 1), d, y;
-    int i = (int)(x == x ? x : R(0.0));
-    i = i < 1 ? 1 : i;
-    i = i > ENERGY_FILM_NODES - 3 ? ENERGY_FILM_NODES - 3 : i;
-    d = x - R(i);
-    f += i - 1;
+    /* the first of the four; a NaN gives 0 here and comes out by d */
+    int i = (int)aspi_min(aspi_max(R(0.0), x - R(1.0)), R(ENERGY_FILM_NODES - 4));
+    d = x - R(i + 1);
+    f += i;
     y = f[0] * (R(-1.0 / 6.0) * d * (d - R(1.0)) * (d - R(2.0)))
       + f[1] * (R(0.5) * (d + R(1.0)) * (d - R(1.0)) * (d - R(2.0)))
       + f[2] * (R(-0.5) * (d + R(1.0)) * d * (d - R(2.0)))

@@ -60,8 +60,7 @@ ASP_RECORD asp_bsdf asp_bsdf_rough_diffuse = {
 #else
 #include "asperity/elementary.h"
 #include "bsdf/bsdf_number.h"
-#include "core/blocks.h"
-#include "core/reflection.h"
+#include "bsdf/reflection.h"
 
 #ifndef ROUGH_DIFFUSE_NAMES
 #define ROUGH_DIFFUSE_NAMES

@@ -15,13 +15,10 @@
 /* A batch block by block; a block's inputs are read before its outputs are written. */
 #define ASPI_FOR_BLOCKS(i, size, n) \
     for (i = 0; i < (n) && (size = (n) - i < ASP_BLOCK ? (n) - i : ASP_BLOCK, 1); i += ASP_BLOCK)
-/* The record's formulas and the public calls' names in this precision. */
+/* The record's formulas in this precision. */
 #define ASPI_OPS_64(k) ((k)->model->f64)
 #define ASPI_OPS_32(k) ((k)->model->f32)
 #define ASPI_OPS ASP_NAME(ASPI_OPS)
-#define ASPI_CALL_64(x) x
-#define ASPI_CALL_32(x) ASP_PASTE(x, f)
-#define ASPI_CALL ASP_NAME(ASPI_CALL)
 #endif
 
 #undef asp_v3s

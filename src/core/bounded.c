@@ -19,7 +19,7 @@
 #else
 #include "core/blocks.h"
 #include "bsdf/bsdf_number.h"
-#include "core/reflection.h"
+#include "bsdf/reflection.h"
 
 #ifndef ASPI_BOUNDED_NAMES
 #define ASPI_BOUNDED_NAMES

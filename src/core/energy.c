@@ -8,17 +8,18 @@
 #define STEP 377
 #define NODES_TURNED 233     /* for each of several azimuths */
 #define STEP_TURNED 144
+#define SIZE 128
 
 static double albedo_of(const asp_material *lobe, asp_vec3 wi, size_t nodes, size_t step)
 {
-    enum { SIZE = 128 };
+    const size_t most = SIZE;
     double x[SIZE], y[SIZE], z[SIZE], u1[SIZE], u2[SIZE], pdf[SIZE], r[SIZE], g[SIZE], b[SIZE], sum = 0.0;
     size_t i, start, size;
     for (start = 0; start < nodes; start += SIZE) {
         asp_cvec3s in;
         asp_vec3s out;
         asp_rgbs weight;
-        size = nodes - start < SIZE ? nodes - start : SIZE;
+        size = nodes - start < most ? nodes - start : most;
         for (i = 0; i < size; i++) {
             size_t k = start + i;
             x[i] = wi.x;

@@ -16,7 +16,7 @@
 #include "bsdf/bsdf_number.h"
 #include "core/rng.h"
 #include "bsdf/facet_fresnel.h"
-#include "core/reflection.h"
+#include "bsdf/reflection.h"
 
 #ifndef ASPI_MATERIAL_NAMES
 #define ASPI_MATERIAL_NAMES

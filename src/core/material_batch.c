@@ -16,14 +16,12 @@
 #include "core/blocks.h"
 #include "bsdf/bsdf_number.h"
 #include "bsdf/facet_fresnel.h"
-#include "core/reflection.h"
+#include "bsdf/reflection.h"
+#include "core/own_batch.h"
 
 #ifndef ASPI_MATERIAL_BATCH_NAMES
 #define ASPI_MATERIAL_BATCH_NAMES
 #define block_fresnel ASP_NAME(block_fresnel)
-#define own_eval_n ASP_NAME(own_eval_n)
-#define own_pdf_n ASP_NAME(own_pdf_n)
-#define own_sample_n ASP_NAME(own_sample_n)
 #define block_share ASP_NAME(block_share)
 #define block_eval ASP_NAME(block_eval)
 #define block_pdf ASP_NAME(block_pdf)
@@ -359,57 +357,13 @@ ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s
     mat->model->ASPI_CALL(value_n)(mat, n, x, y, F[0], F[1], F[2]);
 }
 
-/* ---- models with calls of their own, one by one */
-
-static void own_eval_n(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, int cosine, asp_c3s out)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_v3 a, b;
-        asp_c3 f;
-        a = aspi_at(wi.x, wi.y, wi.z, i);
-        b = aspi_at(wo.x, wo.y, wo.z, i);
-        mat->model->ASPI_CALL(eval)(mat, &a, &b, cosine, &f);
-        out.r[i] = f.r;
-        out.g[i] = f.g;
-        out.b[i] = f.b;
-    }
-}
-
-static void own_pdf_n(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_v3 a, b;
-        a = aspi_at(wi.x, wi.y, wi.z, i);
-        b = aspi_at(wo.x, wo.y, wo.z, i);
-        out[i] = mat->model->ASPI_CALL(pdf)(mat, &a, &b);
-    }
-}
-
-static void own_sample_n(const asp_mat *mat, size_t n, asp_cv3s wi, const asp_real *u1,
-                         const asp_real *u2, asp_v3s wo, asp_real *pdf, asp_c3s weight)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_sampled s = ASPI_CALL(asp_sample)(mat, aspi_at(wi.x, wi.y, wi.z, i), u1[i], u2[i]);
-        wo.x[i] = s.wo.x;
-        wo.y[i] = s.wo.y;
-        wo.z[i] = s.wo.z;
-        pdf[i] = s.pdf;
-        weight.r[i] = s.weight.r;
-        weight.g[i] = s.weight.g;
-        weight.b[i] = s.weight.b;
-    }
-}
-
 /* ---- batches */
 
 void ASPI_CALL(asp_eval_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_c3s out)
 {
     size_t i, size;
     if (mat->model->ASPI_CALL(eval)) {
-        own_eval_n(mat, n, wi, wo, 0, out);
+        ASP_NAME(aspi_own_eval_n)(mat, n, wi, wo, 0, out);
         return;
     }
     ASPI_FOR_BLOCKS(i, size, n)
@@ -420,7 +374,7 @@ void ASPI_CALL(asp_eval_cos_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv
 {
     size_t i, size;
     if (mat->model->ASPI_CALL(eval)) {
-        own_eval_n(mat, n, wi, wo, 1, out);
+        ASP_NAME(aspi_own_eval_n)(mat, n, wi, wo, 1, out);
         return;
     }
     ASPI_FOR_BLOCKS(i, size, n)
@@ -431,7 +385,7 @@ void ASPI_CALL(asp_pdf_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo
 {
     size_t i, size;
     if (mat->model->ASPI_CALL(pdf)) {
-        own_pdf_n(mat, n, wi, wo, out);
+        ASP_NAME(aspi_own_pdf_n)(mat, n, wi, wo, out);
         return;
     }
     ASPI_FOR_BLOCKS(i, size, n)
@@ -444,7 +398,7 @@ void ASPI_CALL(asp_sample_n)(const asp_mat *mat, size_t n, asp_cv3s wi, const as
     asp_real o[3][ASP_BLOCK], p[ASP_BLOCK], F[3][ASP_BLOCK];
     size_t i, size;
     if (mat->model->ASPI_CALL(sample)) {
-        own_sample_n(mat, n, wi, u1, u2, wo, pdf, weight);
+        ASP_NAME(aspi_own_sample_n)(mat, n, wi, u1, u2, wo, pdf, weight);
         return;
     }
     ASPI_FOR_BLOCKS(i, size, n) {

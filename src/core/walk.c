@@ -23,8 +23,8 @@
 #include "core/blocks.h"
 #include "bsdf/bsdf_number.h"
 #include "bsdf/facet_fresnel.h"
-#include "core/reflection.h"
-#include "core/refraction.h"
+#include "bsdf/reflection.h"
+#include "bsdf/refraction.h"
 
 #ifndef ASPI_WALK_NAMES
 #define ASPI_WALK_NAMES

@@ -1,0 +1,59 @@
+/* own_batch.c - batches of models that bring calls of their own: one by one, so that element i is what
+ * the single call gives. Lobes that are chosen by lot do not vectorise. */
+#ifndef ASP_PRECISION
+#include "bsdf/bsdf.h"
+
+#define ASP_PRECISION 64
+#include "own_batch.c"
+#undef ASP_PRECISION
+#define ASP_PRECISION 32
+#include "own_batch.c"
+#undef ASP_PRECISION
+
+#else
+#include "core/blocks.h"
+#include "bsdf/bsdf_number.h"
+#include "core/own_batch.h"
+
+void ASP_NAME(aspi_own_eval_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, int cosine, asp_c3s out)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_v3 a, b;
+        asp_c3 f;
+        a = aspi_at(wi.x, wi.y, wi.z, i);
+        b = aspi_at(wo.x, wo.y, wo.z, i);
+        mat->model->ASPI_CALL(eval)(mat, &a, &b, cosine, &f);
+        out.r[i] = f.r;
+        out.g[i] = f.g;
+        out.b[i] = f.b;
+    }
+}
+
+void ASP_NAME(aspi_own_pdf_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_v3 a, b;
+        a = aspi_at(wi.x, wi.y, wi.z, i);
+        b = aspi_at(wo.x, wo.y, wo.z, i);
+        out[i] = mat->model->ASPI_CALL(pdf)(mat, &a, &b);
+    }
+}
+
+void ASP_NAME(aspi_own_sample_n)(const asp_mat *mat, size_t n, asp_cv3s wi, const asp_real *u1,
+                         const asp_real *u2, asp_v3s wo, asp_real *pdf, asp_c3s weight)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_sampled s = ASPI_CALL(asp_sample)(mat, aspi_at(wi.x, wi.y, wi.z, i), u1[i], u2[i]);
+        wo.x[i] = s.wo.x;
+        wo.y[i] = s.wo.y;
+        wo.z[i] = s.wo.z;
+        pdf[i] = s.pdf;
+        weight.r[i] = s.weight.r;
+        weight.g[i] = s.weight.g;
+        weight.b[i] = s.weight.b;
+    }
+}
+#endif
