@@ -24,11 +24,10 @@ ASP_FN asp_real aspi_fresnel_film(const asp_real *f, asp_real c)
     /* the first of the four; a NaN gives 0 here and comes out by d */
     int i = (int)aspi_min(aspi_max(R(0.0), x - R(1.0)), R(ENERGY_FILM_NODES - 4));
     d = x - R(i + 1);
-    f += i;
-    y = f[0] * (R(-1.0 / 6.0) * d * (d - R(1.0)) * (d - R(2.0)))
-      + f[1] * (R(0.5) * (d + R(1.0)) * (d - R(1.0)) * (d - R(2.0)))
-      + f[2] * (R(-0.5) * (d + R(1.0)) * d * (d - R(2.0)))
-      + f[3] * (R(1.0 / 6.0) * (d + R(1.0)) * d * (d - R(1.0)));
+    y = f[i] * (R(-1.0 / 6.0) * d * (d - R(1.0)) * (d - R(2.0)))
+      + f[i + 1] * (R(0.5) * (d + R(1.0)) * (d - R(1.0)) * (d - R(2.0)))
+      + f[i + 2] * (R(-0.5) * (d + R(1.0)) * d * (d - R(2.0)))
+      + f[i + 3] * (R(1.0 / 6.0) * (d + R(1.0)) * d * (d - R(1.0)));
     y = y < R(0.0) ? R(0.0) : y;
     return y > R(1.0) ? R(1.0) : y;
 }

@@ -195,7 +195,7 @@ ASP_FN void loop_dielectric(size_t n, asp_real eta, IN c, OUT F)
         F[i] = aspi_fresnel_dielectric(c[i], eta);
 }
 
-ASP_FN void loop_film(size_t n, const asp_real *table, IN c, OUT F)
+ASP_FN void loop_film(size_t n, IN table, IN c, OUT F)
 {
     size_t i;
     for (i = 0; i < n; i++)
