@@ -141,12 +141,16 @@ typedef struct asp_series {
     asp_dash      dash;
     asp_marker    marker;
     double        width;             /* of the line in px; 0: 1.8 */
+    const char   *note;              /* small, in a chart written at the curve where it has most room:
+                                      * the parameter that tells it from its family. Curves with the
+                                      * same note share it. NULL: none */
 } asp_series;
 
 /* A thin grey line across the plot: the mirror direction, a reference value. */
 typedef struct asp_rule {
     double      value;               /* outside the limits or not finite: not drawn */
-    int         horizontal;          /* 0: at x = value; 1: at y = value */
+    int         horizontal;          /* 0: at x = value; 1: at y = value, its label on the right; 2: the
+                                      * same, its label on the left */
     const char *label;               /* small, beside the line; NULL: none */
 } asp_rule;
 

@@ -86,5 +86,21 @@ cc -O2 -Iinclude examples/6_render.c "$build/libasperity_draw.a" "$build/libaspe
 (cd "$scratch" && ./render >render.log)
 put docs/images/spheres.png "$scratch/spheres.png"
 file docs/commands.md asperity help --markdown
+file docs/distributions.md asperity list --markdown
+file docs/figures.md asperity figures --markdown
+# The figures: SVG as they are. Of their numbers only the checksums are kept, and PNG are not kept at all:
+# they are the SVG as the librsvg at hand draws it. Figure 4 of the STD paper is measured; its times are
+# kept, and only the drawing of them is repeated (asperity figures std-4 -o docs/images/figures measures).
+kept=docs/images/figures
+asperity figures --no-png --cost $kept/std-4.csv -o "$scratch/figures" ||
+    { echo "docs.sh: asperity figures failed" >&2; exit 1; }
+for f in "$scratch"/figures/*.svg; do
+    put "$kept/${f##*/}" "$f"
+done
+for f in $kept/*.svg; do
+    [ -e "$scratch/figures/${f##*/}" ] || { echo "no figure any more: $f"; stale=$((stale + 1)); }
+done
+(cd "$scratch/figures" && sha256sum -- *.csv) >"$scratch/numbers"
+put $kept/numbers.sha256 "$scratch/numbers"
 
 [ $stale = 0 ] || { echo "$stale stale: run make docs and commit what changed"; exit 1; }

@@ -30,6 +30,7 @@ library_of jansson libjansson-dev
 library_of libpng libpng-dev
 library_of OpenEXR libopenexr-dev
 library_of cminpack libcminpack-dev
+library_of librsvg-2.0 librsvg2-dev
 file_of libembree-dev /usr/lib*/cmake/embree-3*/embree-config.cmake \
     /usr/lib/*/cmake/embree-3*/embree-config.cmake \
     /usr/local/lib*/cmake/embree-3*/embree-config.cmake

@@ -145,7 +145,7 @@ static void test_gaps(void)
     int moves;
     for (int i = 0; i < 12; i++) {
         x[i] = i;
-        y[i] = 1 + i;
+        y[i] = 1 + i + i % 2;
     }
     asp_series series = { .label = "curve", .x = x, .y = y, .count = 12 };
     asp_chart chart = { .series = &series, .series_count = 1 };

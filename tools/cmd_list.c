@@ -6,6 +6,7 @@
 #include "asperity_ndf.h"
 #include "bsdf/bsdf.h"
 #include "data/measured.h"
+#include "list_page.h"
 
 #include <math.h>
 #include <string.h>
@@ -235,6 +236,12 @@ static int run(const cmd_args *args)
         names[i] = sections[i].name;
     if (only && cmd_find(only, names) < 0)
         return cmd_unknown("unknown section", only, names);
+    if (cmd_given(args, "markdown")) {
+        if (only && strcmp(only, "distributions") != 0)
+            return cmd_usage("--markdown writes the page of the distributions, not of %s", only);
+        list_page();
+        return CMD_OK;
+    }
     json_t *tree = json_object();
     for (int i = 0; i < SECTIONS; i++)
         if (!only || strcmp(only, names[i]) == 0)
@@ -256,6 +263,7 @@ static int run(const cmd_args *args)
 
 static const cmd_option options[] = {
     { "json", 0, NULL, CMD_FLAG, .help = "write JSON; infinite ends of ranges are strings" },
+    { "markdown", 0, NULL, CMD_FLAG, .help = "write the page of the distributions" },
     CMD_END
 };
 

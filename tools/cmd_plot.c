@@ -1,5 +1,6 @@
 /* cmd_plot.c - curves of distributions and lobes of materials and measurements, as SVG */
 #include "cmd.h"
+#include "panels.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -222,58 +223,7 @@ static void write_numbers(const struct quantity *q, const curves *from, cmd_out 
         }
 }
 
-/* ------------------------------------------------------------------ several panels in one file */
-
-/* The size that the panel's own <svg> tag states. */
-static double attribute(const char *svg, const char *name)
-{
-    char key[24];
-    const char *end = strchr(svg, '>');
-    double value = 0;
-    snprintf(key, sizeof key, " %s=\"", name);
-    const char *at = strstr(svg, key);
-    if (at && end && at < end) {
-        at += strlen(key);
-        aspi_parse_number(at, strcspn(at, "\""), &value);
-    }
-    return value;
-}
-
-/* Panels two abreast; each keeps its own coordinates inside. */
-static void write_panels(char *const *svg, size_t count, cmd_out *out)
-{
-    size_t columns = count > 1 ? 2 : 1;
-    double width = 0, heights = 0, top = 0;
-    char text[256];
-    if (count == 1) {
-        cmd_out_write(out, svg[0], strlen(svg[0]));
-        return;
-    }
-    for (size_t i = 0; i < count; i++)
-        width = fmax(width, attribute(svg[i], "width"));
-    for (int pass = 0; pass < 2; pass++) {       /* first how high, then the text */
-        for (size_t i = 0; i < count; i += columns) {
-            double height = 0;
-            for (size_t j = i; j < count && j < i + columns; j++) {
-                height = fmax(height, attribute(svg[j], "height"));
-                if (!pass)
-                    continue;
-                snprintf(text, sizeof text, "<g transform=\"translate(%.0f %.0f)\">\n",
-                         (double)(j - i) * width, top);
-                cmd_out_write(out, text, strlen(text));
-                cmd_out_write(out, svg[j], strlen(svg[j]));
-                cmd_out_write(out, "</g>\n", 5);
-            }
-            *(pass ? &top : &heights) += height;
-        }
-        snprintf(text, sizeof text, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" "
-                 "height=\"%.0f\" viewBox=\"0 0 %.0f %.0f\">\n", (double)columns * width, heights,
-                 (double)columns * width, heights);
-        if (!pass)
-            cmd_out_write(out, text, strlen(text));
-    }
-    cmd_out_write(out, "</svg>\n", 7);
-}
+/* ------------------------------------------------------------------ the files */
 
 static int draw(const picture *p, cmd_out *out, cmd_out *numbers)
 {
@@ -292,8 +242,14 @@ static int draw(const picture *p, cmd_out *out, cmd_out *numbers)
         else if (numbers)
             write_numbers(p->panels[made], c, numbers);
     }
-    if (status == CMD_OK)
-        write_panels(svg, p->panel_count, out);
+    if (status == CMD_OK) {
+        char *all = panels_svg(svg, p->panel_count, 2, NULL);
+        if (all)
+            cmd_out_write(out, all, strlen(all));
+        else
+            status = cmd_failed("out of memory");
+        free(all);
+    }
     for (size_t i = 0; i < PANELS; i++)
         free(svg[i]);
     free(c);

@@ -170,6 +170,15 @@ int csv_numbers(const csv *table, const int *wanted, size_t count, double *out)
     return 0;
 }
 
+void csv_text(const csv *table, int column, char *out, size_t size)
+{
+    const char *at = table->line, *start = "";
+    size_t length = 0;
+    for (int i = 0; at && i <= column; i++)
+        at = cell(at, table->separator, &start, &length);
+    snprintf(out, size, "%.*s", (int)length, start);
+}
+
 void csv_close(csv *table)
 {
     for (size_t i = 0; table->column && i < table->columns; i++)

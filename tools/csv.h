@@ -32,6 +32,8 @@ int  csv_find(const csv *table, const char *name);
 /* The numbers in the cells `wanted[0..count)` of the line. 0, or 1 and the error
  * printed. */
 int  csv_numbers(const csv *table, const int *wanted, size_t count, double *out);
+/* The cell of a column as text, cut to what fits. */
+void csv_text(const csv *table, int column, char *out, size_t size);
 void csv_close(csv *table);
 
 #endif

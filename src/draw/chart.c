@@ -237,8 +237,9 @@ static void draw_rules(aspi_text *text, const asp_chart *chart, const layout *l)
             continue;
         double width = aspi_label_width(rule->label, 10.5);
         if (rule->horizontal)
-            aspi_text_label(text, rule->label, p->right - 5, at - p->top > 16 ? at - 4 : at + 12, 10.5,
-                            ASPI_END, 0, " fill=\"#666666\"");
+            aspi_text_label(text, rule->label, rule->horizontal == 2 ? p->left + 5 : p->right - 5,
+                            at - p->top > 16 ? at - 4 : at + 12, 10.5,
+                            rule->horizontal == 2 ? ASPI_START : ASPI_END, 0, " fill=\"#666666\"");
         else
             aspi_text_label(text, rule->label, at + width + 6 < p->right ? at + 4 : at - 4, p->top + 12,
                             10.5, at + width + 6 < p->right ? ASPI_START : ASPI_END, 0,
@@ -296,7 +297,38 @@ static void draw_chart(aspi_text *text, const asp_chart *chart, const layout *l,
     }
     aspi_legend_draw(text, &l->legend, chart->series, styles, chart->series_count, l->legend_left,
                      l->legend_top, l->place != ASP_LEGEND_RIGHT && l->place != ASP_LEGEND_BELOW);
-    aspi_svg_end(text);
+}
+
+/* The notes, once all that they must not touch is decided. */
+static asp_status draw_notes(aspi_text *text, const asp_chart *chart, const layout *l,
+                             const aspi_style *styles, asp_error *err)
+{
+    size_t total = 0, used = 0, notes = 0;
+    for (size_t s = 0; s < chart->series_count; s++) {
+        total += chart->series[s].count;
+        notes += chart->series[s].note != NULL;
+    }
+    if (!notes)
+        return ASP_OK;
+    aspi_point *all = malloc((total + 1) * sizeof *all);
+    aspi_point **points = malloc((chart->series_count + 1) * sizeof *points);
+    asp_status status = all && points ? ASP_OK
+                                      : asp_fail(err, ASP_ENOMEM, "chart", "out of memory");
+    for (size_t s = 0; status == ASP_OK && s < chart->series_count; s++) {
+        points[s] = all + used;
+        for (size_t i = 0; i < chart->series[s].count; i++)
+            all[used++] = to_px(l, chart->series[s].x[i], chart->series[s].y[i]);
+    }
+    aspi_box legend = { l->legend_left, l->legend_top, l->legend_left + l->legend.width,
+                        l->legend_top + l->legend.height };
+    if (!l->legend.entries)
+        legend = (aspi_box){ 0, 0, -1, -1 };
+    if (status == ASP_OK)
+        status = aspi_draw_notes(text, &l->plot, &legend, chart->series, styles, points,
+                                 chart->series_count, err);
+    free(points);
+    free(all);
+    return status;
 }
 
 static asp_status check(const asp_chart *chart, int width, int height, asp_error *err)
@@ -337,8 +369,13 @@ char *asp_chart_svg(const asp_chart *chart, asp_error *err)
     layout l;
     choose_layout(chart, width, height, &l);
     draw_chart(&text, chart, &l, styles, width, height, points, scratch);
+    if (draw_notes(&text, chart, &l, styles, err) != ASP_OK)
+        goto done;
+    aspi_svg_end(&text);
     svg = aspi_text_finish(&text, err);
 done:
+    if (!svg)
+        aspi_text_free(&text);
     free(styles);
     free(points);
     free(scratch);

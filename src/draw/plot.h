@@ -75,4 +75,12 @@ aspi_legend aspi_legend_size(const asp_series *series, size_t count, double room
 void aspi_legend_draw(aspi_text *text, const aspi_legend *legend, const asp_series *series,
                       const aspi_style *styles, size_t count, double left, double top, int box);
 
+/* ---- notes at the curves */
+
+/* Curves in px, each of count[k] points with NaN for gaps; writes series[k].note where nothing else is
+ * drawn, `legend` (right < left: none) included. */
+asp_status aspi_draw_notes(aspi_text *text, const aspi_box *plot, const aspi_box *legend,
+                           const asp_series *series, const aspi_style *styles,
+                           aspi_point *const *points, size_t count, asp_error *err);
+
 #endif

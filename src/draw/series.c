@@ -46,17 +46,53 @@ static int inside(const aspi_box *box, aspi_point p)
 
 /* Steps shorter than this are joined: nobody sees them, and files with a million points stay small. */
 #define SHORTEST 0.3
+/* A point this near to the line past it is left out. */
+#define STRAIGHT 0.04
+
+/* The directions from `from` in which a line passes all points left out since: those whose cross
+ * products with both edges have the right sign. Nothing is left out yet: open. */
+typedef struct wedge { int open; aspi_point low, high; double reach; } wedge;
+
+static double cross(aspi_point a, aspi_point b) { return a.x * b.y - a.y * b.x; }
+
+/* Whether b can follow straight on, so that the point before it is of no use. */
+static int goes_on(const wedge *w, aspi_point from, aspi_point b)
+{
+    aspi_point d = { b.x - from.x, b.y - from.y };
+    return w->open || (cross(w->low, d) >= 0 && cross(d, w->high) >= 0 && hypot(d.x, d.y) > w->reach);
+}
+
+/* p is left out: the line has to pass it. */
+static void narrow(wedge *w, aspi_point from, aspi_point p)
+{
+    aspi_point d = { p.x - from.x, p.y - from.y };
+    double length = hypot(d.x, d.y), t = STRAIGHT / fmax(length, STRAIGHT);
+    aspi_point low = { d.x + t * d.y, d.y - t * d.x }, high = { d.x - t * d.y, d.y + t * d.x };
+    w->low = w->open || cross(w->low, low) > 0 ? low : w->low;
+    w->high = w->open || cross(high, w->high) > 0 ? high : w->high;
+    w->reach = w->open || length > w->reach ? length : w->reach;
+    w->open = 0;
+}
 
 static void draw_line(aspi_text *text, const aspi_box *box, const aspi_point *points, size_t count)
 {
     aspi_point last = { NAN, NAN };     /* where the pen is */
-    aspi_point from = { NAN, NAN };     /* the point before */
+    aspi_point from = { NAN, NAN };     /* the point before that was not left out */
+    wedge      on = { .open = 1 };
     for (size_t i = 0; i < count; i++) {
         aspi_point a = from, b = points[i];
-        if (!isnan(a.x) && !isnan(b.x) && i + 1 < count && !isnan(points[i + 1].x)
-            && hypot(b.x - a.x, b.y - a.y) < SHORTEST)
-            continue;
+        if (!isnan(a.x) && !isnan(b.x) && i + 1 < count && !isnan(points[i + 1].x)) {
+            if (hypot(b.x - a.x, b.y - a.y) < SHORTEST)
+                continue;
+            wedge after = on;
+            narrow(&after, a, b);
+            if (goes_on(&on, a, b) && goes_on(&after, a, points[i + 1])) {
+                on = after;
+                continue;
+            }
+        }
         from = b;
+        on.open = 1;
         if (isnan(a.x) || isnan(b.x) || !aspi_clip(box, &a, &b))
             continue;
         if (!(fabs(a.x - last.x) < 1e-6 && fabs(a.y - last.y) < 1e-6))
