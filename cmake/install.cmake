@@ -20,7 +20,8 @@ endif()
 set_target_properties(asperity PROPERTIES EXPORT_NAME asperity)
 install(TARGETS asperity EXPORT asperity-core)
 install(EXPORT asperity-core NAMESPACE asperity:: DESTINATION ${ASPERITY_PACKAGE_DIR})
-install(FILES include/asperity.h include/asperity_ndf.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES include/asperity.h include/asperity_ndf.h include/asperity_study.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY include/asperity DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.h")
 

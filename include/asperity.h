@@ -11,7 +11,7 @@
  *   7  Materials      eval, pdf, sample
  *   8  Batches        the same calls over arrays
  *   9  float32        the same calls with the suffix f
- *  10  Study          the STD paper's own maskings
+ *  10  Study          the STD paper's own maskings; asperity_study.h has oracles, Walter's sampler, SGGX
  *  11  Conversions    roughness as other systems count it, moments of slopes, filtering
  *  12  Walks          multiple scattering
  *

@@ -370,6 +370,33 @@ def sample_lengths():
               "--wi %s is not 1,0,1" % wi)
 
 
+def samplers():
+    """Visible normals by other samplers: the same law, by the mean of the slope along x."""
+    for spec in ("ggx:alpha=0.4,mean_x=0.1", "ellipsoid:alpha_x=0.3,alpha_y=0.2,theta_x=0.2"):
+        mean = {}
+        for sampler in ("default", "walter", "rejection"):
+            for precision in ("f64", "f32"):
+                words = ["sample", "visible", "--ndf", spec, "--wi", "70,30", "--precision", precision,
+                         "--sampler", sampler]
+                long = run(*words, "-n", "4000", status=0).stdout
+                check(long.startswith(run(*words, "-n", "1100", status=0).stdout),
+                      sampler + ": a longer run begins differently")
+                drawn = rows(long)
+                mean[sampler] = sum(float(row["mx"]) for row in drawn) / len(drawn)
+                seen = rows(run("eval", "pdf_visible", "--ndf", spec, "--precision", precision, stdin=long,
+                                status=0).stdout)
+                tolerance = 1e-12 if precision == "f64" else 1e-3
+                check(all(near(float(row["pdf"]), float(row["pdf_visible"]), tolerance) for row in seen),
+                      sampler + ": pdf")
+                check(len(set(row["mx"] for row in drawn)) > 3900, sampler + ": normals repeat")
+                check(abs(mean[sampler] - mean["default"]) < 0.02, "%s: mean %r" % (sampler, mean))
+    run("sample", "visible", "--ndf", "beckmann", "--wi", "0,0", "--sampler", "walter", status=2,
+        says=["walter", "beckmann"])
+    run("sample", "normal", "--ndf", "ggx", "--sampler", "walter", status=2, says=["--sampler"])
+    run("sample", "visible", "--ndf", "ggx", "--wi", "0,0", "--sampler", "smith", status=2,
+        says=["--sampler", "rejection"])
+
+
 def samples():
     for what, wi in (("normal", None), ("visible", "60,30"), ("brdf", "60,30")):
         for precision in ("f64", "f32"):
@@ -405,4 +432,4 @@ def samples():
 
 
 run_sections([help_texts, usage_errors, list_ranges, eval_values, eval_read_back, eval_bad_rows,
-              eval_forms, eval_memory, sample_lengths, samples])
+              eval_forms, eval_memory, sample_lengths, samplers, samples])

@@ -1,4 +1,6 @@
 /* cmd_sample.c - directions drawn by the samplers of the library */
+#include "asperity_ndf.h"
+#include "asperity_study.h"
 #include "cmd.h"
 #include "core/rng.h"
 #include "precision.h"
@@ -9,6 +11,7 @@
 #define BLOCK 1024
 
 enum { NORMAL, VISIBLE, BRDF };
+enum { DEFAULT, WALTER, REJECTION };
 
 /* What one block holds; in the order of the columns of `sample brdf`. */
 enum { AT_U = 0, AT_WI = 2, AT_DIRECTION = 5, AT_PDF = 8, AT_WEIGHT = 9, SLOTS = 12 };
@@ -16,13 +19,45 @@ enum { AT_U = 0, AT_WI = 2, AT_DIRECTION = 5, AT_PDF = 8, AT_WEIGHT = 9, SLOTS =
 typedef struct block64 { double at[SLOTS][BLOCK]; } block64;
 typedef struct block32 { float at[SLOTS][BLOCK]; } block32;
 
+/* The stream of one row of the rejection sampler. */
+typedef struct row_stream { uint64_t start, next; } row_stream;
+
 typedef struct job {
-    int what;
+    int what, sampler;
+    double matrix[9];            /* walter */
+    asp_oracle oracle;           /* rejection */
     asp_vec3 wi;
     uint64_t start;              /* of the random stream */
     asp_material  material;
     asp_materialf materialf;
 } job;
+
+static double next_uniform(void *state)
+{
+    row_stream *row = state;
+    return aspi_unit64(aspi_random_at(row->start, row->next++));
+}
+
+/* A visible normal by Walter's map of (u1, u2), or by rejection from a stream of the row's own. */
+static asp_vec3 draw_other(const job *work, uint64_t row, double u1, double u2)
+{
+    row_stream stream = { aspi_random_start(aspi_random_at(work->start, row), 1), 0 };
+    return work->sampler == WALTER ? asp_sample_visible_walter(work->matrix, work->wi, u1, u2)
+                                   : asp_oracle_visible(&work->oracle, work->wi, next_uniform, &stream);
+}
+
+#define DEFINE_DRAW_OTHER(S, REAL)                                                                 \
+    static void draw_other##S(const job *work, block##S *b, uint64_t first, size_t n)              \
+    {                                                                                              \
+        for (size_t i = 0; i < n; i++) {                                                           \
+            asp_vec3 m = draw_other(work, first + i, b->at[AT_U][i], b->at[AT_U + 1][i]);          \
+            b->at[AT_DIRECTION][i] = (REAL)m.x;                                                    \
+            b->at[AT_DIRECTION + 1][i] = (REAL)m.y;                                                \
+            b->at[AT_DIRECTION + 2][i] = (REAL)m.z;                                                \
+        }                                                                                          \
+    }
+DEFINE_DRAW_OTHER(64, double)
+DEFINE_DRAW_OTHER(32, float)
 
 /* Fills u1, u2 and wi, then the batch calls; S is the precision. */
 #define DEFINE_DRAW(S, REAL, MATERIAL, CVEC3S, VEC3S, RGBS)                                        \
@@ -40,7 +75,10 @@ typedef struct job {
             b->at[AT_WI + 1][i] = (REAL)work->wi.y;                                                \
             b->at[AT_WI + 2][i] = (REAL)work->wi.z;                                                \
         }                                                                                          \
-        if (work->what == BRDF) {                                                                  \
+        if (work->sampler) {                                                                       \
+            draw_other##S(work, b, first, n);                                                      \
+            N_##S(asp_pdf_visible)(&MATERIAL.ndf, n, wi, drawn, pdf);                              \
+        } else if (work->what == BRDF) {                                                              \
             N_##S(asp_sample)(&MATERIAL, n, wi, u1, u2, to, pdf, weight);                          \
         } else if (work->what == VISIBLE) {                                                        \
             N_##S(asp_sample_visible)(&MATERIAL.ndf, n, wi, u1, u2, to);                           \
@@ -91,6 +129,28 @@ static void draw_all(const job *work, block64 *b, block32 *bf, uint64_t count, c
     }
 }
 
+static int make_sampler(const cmd_args *args, job *work)
+{
+    const asp_ndf *ndf = &work->material.ndf;
+    char line[640];
+    asp_error err;
+    work->sampler = cmd_choice(args, "sampler");
+    if (work->sampler == DEFAULT)
+        return CMD_OK;
+    if (work->what != VISIBLE)
+        return cmd_usage("--sampler: only sample visible has a choice of samplers");
+    if (work->sampler == WALTER) {
+        if (ndf->model != asp_find_model(NULL, "ggx") && ndf->model != asp_find_model(NULL, "ellipsoid"))
+            return cmd_usage("--sampler walter: is for ggx and ellipsoid, not %s", ndf->model->name);
+        asp_map_to_matrix(&ndf->map, work->matrix);
+        return CMD_OK;
+    }
+    if (asp_oracle_make(ndf, ASP_ORACLE_STUDENT, &work->oracle, NULL)
+        && asp_oracle_make(ndf, ASP_ORACLE_RADIAL, &work->oracle, &err))
+        return cmd_usage("--sampler rejection: %s", asp_error_text(&err, line, sizeof line));
+    return CMD_OK;
+}
+
 static int make_job(const cmd_args *args, job *work)
 {
     static const char *const whats[] = { "normal", "visible", "brdf", NULL };
@@ -112,7 +172,7 @@ static int make_job(const cmd_args *args, job *work)
         return cmd_usage("--wi %s: no facet is seen from there", cmd_text(args, "wi"));
     if (work->what == BRDF && !(work->wi.z > 0))
         return cmd_usage("--wi %s: z = %g is outside (0, 1]", cmd_text(args, "wi"), work->wi.z);
-    return CMD_OK;
+    return make_sampler(args, work);
 }
 
 static int run(const cmd_args *args)
@@ -146,6 +206,9 @@ static const cmd_option options[] = {
     { "count", 'n', "N", CMD_INTEGER, 1, 1e12, .initial = "10", .help = "how many" },
     { "seed", 's', "N", CMD_INTEGER, 0, 9007199254740991.0, .initial = "1",
       .help = "another seed, other numbers" },
+    { "sampler", 0, "default|walter|rejection", CMD_CHOICE, .initial = "default",
+      .help = "of visible: walter is the Ellipsoid paper's (ggx, ellipsoid), rejection exact without "
+              "inversion or tables; it leaves u1, u2 unused" },
     { "precision", 0, "f64|f32", CMD_CHOICE, .initial = "f64",
       .help = "f32 draws and evaluates in single precision" },
     { "output", 'o', "FILE", CMD_TEXT, .help = "write there instead of standard output" },
