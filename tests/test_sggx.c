@@ -19,7 +19,7 @@ static const struct matrix { const char *name; double A[9]; } matrices[] = {
 
 static void below(const char *name, const char *what, double found, double bound)
 {
-    char line[200];
+    char line[400];
     snprintf(line, sizeof line, "%s: %s: %.3g, bound %g", name, what, found, bound);
     printf("%-4s %s\n", found <= bound ? "ok" : "FAIL", line);
     say(found <= bound, line);
