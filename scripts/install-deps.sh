@@ -30,7 +30,6 @@ library_of jansson libjansson-dev
 library_of libpng libpng-dev
 library_of OpenEXR libopenexr-dev
 library_of cminpack libcminpack-dev
-library_of librsvg-2.0 librsvg2-dev
 file_of libembree-dev /usr/lib*/cmake/embree-3*/embree-config.cmake \
     /usr/lib/*/cmake/embree-3*/embree-config.cmake \
     /usr/local/lib*/cmake/embree-3*/embree-config.cmake
@@ -48,26 +47,40 @@ if [ "$what" = test ]; then
         /usr/lib/llvm-14/lib/clang/14*/lib/wasi/libclang_rt.builtins-wasm32.a
 fi
 
-[ -n "$missing" ] || exit 0
-line="apt-get install -y --no-install-recommends$missing"
-if ! command -v apt-get >/dev/null 2>&1; then
-    echo "Missing (names of Debian 12):$missing" >&2
-    exit 1
-fi
-if [ "$(id -u)" = 0 ]; then
-    become=
-elif command -v sudo >/dev/null 2>&1 && { [ -t 0 ] || sudo -n true 2>/dev/null; }; then
-    become=sudo
-else
-    echo "Some packages are missing. As root, type:" >&2
-    echo "    apt-get update && $line" >&2
-    exit 1
-fi
-echo "Installing:$missing"
+# Of use but not needed: without it `asperity figures` writes SVG and numbers, no PNG.
+optional=
+pkg-config --exists librsvg-2.0 2>/dev/null || optional=librsvg2-dev
+
+# install RETRIES PACKAGE...: 1, and the line to type, where it cannot be done
+install() {
+    retries=$1
+    shift
+    line="apt-get install -y --no-install-recommends $*"
+    if ! command -v apt-get >/dev/null 2>&1; then
+        echo "Missing (names of Debian 12): $*" >&2
+        return 1
+    fi
+    if [ "$(id -u)" = 0 ]; then
+        become=
+    elif command -v sudo >/dev/null 2>&1 && { [ -t 0 ] || sudo -n true 2>/dev/null; }; then
+        become=sudo
+    else
+        echo "Some packages are missing. As root, type:" >&2
+        echo "    apt-get update && $line" >&2
+        return 1
+    fi
+    echo "Installing: $*"
+    if ! { $become env DEBIAN_FRONTEND=noninteractive apt-get -o Acquire::Retries="$retries" update &&
+        $become env DEBIAN_FRONTEND=noninteractive $line; } >"$log" 2>&1 </dev/null; then
+        [ "$retries" = 0 ] || cat "$log" >&2
+        echo "install-deps.sh: apt-get failed; by hand: apt-get update && $line" >&2
+        return 1
+    fi
+}
+
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-if ! { $become env DEBIAN_FRONTEND=noninteractive apt-get -o Acquire::Retries=3 update && $become env DEBIAN_FRONTEND=noninteractive $line; } >"$log" 2>&1 </dev/null; then
-    cat "$log" >&2
-    echo "install-deps.sh: apt-get failed; by hand: apt-get update && $line" >&2
-    exit 1
-fi
+# shellcheck disable=SC2086
+[ -z "$missing" ] || install 3 $missing || exit 1
+[ -z "$optional" ] || install 0 $optional ||
+    echo "Going on without $optional: \`asperity figures\` will write no PNG" >&2
