@@ -166,6 +166,29 @@ typedef struct asp_slope_statistics {
 asp_status asp_height_field_slopes(const asp_height_field *field, asp_slope_statistics *out,
                                    asp_error *err);
 
+/* The slopes of the facets as a distribution: counted in nx x ny cells (asp_histogram_make; 1024 at most
+ * each way) over `range`, or where that is NULL from the least slope to the largest but not beyond 4
+ * standard deviations; slopes outside count in the cell next to them. `map` as there, NULL: none.
+ * *memory is what the value stands on: free() it when the value and its copies are no longer used.
+ * ASP_EINVAL (no facets, bins, range), ASP_ENOMEM; then *out and *memory are untouched. */
+asp_status asp_height_field_histogram(const asp_height_field *field, size_t nx, size_t ny,
+                                      const asp_slope_range *range, const asp_map *map, void **memory,
+                                      asp_ndf *out, asp_error *err);
+
+/* asp_ndf_parse and asp_material_parse for specs that may name a file of slopes,
+ *     histogram:file=PATH[,bins=N|NX/NY][,range=R|LOW_X/HIGH_X/LOW_Y/HIGH_Y][,the slope map's keys]
+ * with alpha = 1 unless given; a path with a comma stands in parentheses. The file is a height field (.f32)
+ * or text with a header (csv): p_x, p_y and either density (P22 at the centres of an even grid, each cell
+ * once: then its cells are the histogram's) or weight (slopes one by one, all of weight 1 where there is
+ * no such column), at most 4194304 rows, slopes up to 1000. bins is 64 unless given.
+ *
+ * *memory: NULL, or what the value stands on: free() it when the value and its copies are no longer used.
+ * On failure err names the file, the line and the value, or the byte of the spec. */
+asp_status asp_ndf_read(const asp_model *const *models, const char *spec, asp_ndf *out, void **memory,
+                        asp_error *err);
+asp_status asp_material_read(const asp_model *const *models, const char *spec, asp_material *out,
+                             void **memory, asp_error *err);
+
 /* A measurement to be made. */
 typedef struct asp_fabrication {
     asp_surface_recipe surface;

@@ -98,6 +98,8 @@ const char *cmd_operand(const cmd_args *args, size_t index);            /* NULL 
  * unit; theta,phi in degrees when there are two numbers) or a mask. CMD_OK, or the error printed
  * (with the name at fault, its range, or the known names) and CMD_USAGE. */
 int cmd_ndf(const cmd_args *args, const char *option, size_t index, asp_ndf *out);
+/* asp_ndf_read; what the value stands on is kept until the command ends. */
+asp_status cmd_read_ndf(const char *spec, asp_ndf *out, asp_error *err);
 int cmd_material(const cmd_args *args, const char *option, size_t index, asp_material *out);
 int cmd_direction(const cmd_args *args, const char *option, asp_vec3 *out);
 int cmd_mask(const cmd_args *args, const char *option, int *out);

@@ -59,8 +59,8 @@ static int check_spec(const char *spec, asp_laws_options *how, progress *p, grou
 {
     asp_ndf ndf;
     asp_error err;
-    if (asp_ndf_parse(NULL, spec, &ndf, &err) != ASP_OK)
-        return cmd_bad_ndf("", spec, &err);
+    if (cmd_read_ndf(spec, &ndf, &err) != ASP_OK)
+        return err.file[0] ? cmd_error(&err) : cmd_bad_ndf("", spec, &err);
     g->spec = spec;
     g->spec_count++;
     how->progress = show;

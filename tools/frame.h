@@ -25,6 +25,8 @@ struct cmd_args {
  * (CMD_FAILED where there is no memory). */
 int  frame_parse(const cmd_record *record, int argc, char **argv, cmd_args *out);
 void frame_release(cmd_args *args);
+/* What cmd_read_ndf and cmd_material keep. */
+void frame_release_files(void);
 
 /* Checks one value of an option by its kind and range. 0, or 1 with the reason in `why`. */
 int  frame_check(const cmd_option *option, const char *text, double *number, char *why, size_t size);

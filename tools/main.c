@@ -50,6 +50,7 @@ static int run(const cmd_record *record, int argc, char **argv)
         status = record->run(&args);
     }
     frame_release(&args);
+    frame_release_files();
     return status;
 }
 

@@ -4,6 +4,7 @@
 #include "bsdf/bsdf.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Names of distributions, materials and metals; `at_start` leaves those that a spec begins with. */
@@ -62,12 +63,48 @@ int cmd_bad_ndf(const char *given, const char *spec, const asp_error *err)
                      "distributions: %s", given, spec, err->name, known);
 }
 
+/* What distributions stand on lives as long as the command. */
+static void *kept[256];
+static size_t kept_count;
+
+static int keep(void *memory)
+{
+    if (!memory)
+        return CMD_OK;
+    if (kept_count == sizeof kept / sizeof *kept) {
+        free(memory);
+        return CMD_FAILED;
+    }
+    kept[kept_count++] = memory;
+    return CMD_OK;
+}
+
+void frame_release_files(void)
+{
+    while (kept_count)
+        free(kept[--kept_count]);
+}
+
+/* A file that cannot be read, or memory that is out, is no mistake in the command line. */
+static int from_file(const asp_error *err) { return err->file[0] || err->status == ASP_ENOMEM; }
+
+asp_status cmd_read_ndf(const char *spec, asp_ndf *out, asp_error *err)
+{
+    void *memory;
+    asp_status status = asp_ndf_read(NULL, spec, out, &memory, err);
+    if (status == ASP_OK && keep(memory) != CMD_OK)
+        return asp_fail(err, ASP_ENOMEM, "file", "too many distributions from files");
+    return status;
+}
+
 int cmd_ndf(const cmd_args *args, const char *option, size_t index, asp_ndf *out)
 {
     asp_error err;
     const char *spec = cmd_text_at(args, option, index);
-    if (asp_ndf_parse(NULL, spec, out, &err) == ASP_OK)
+    if (cmd_read_ndf(spec, out, &err) == ASP_OK)
         return CMD_OK;
+    if (from_file(&err))
+        return cmd_error(&err);
     if (err.status != ASP_EUNKNOWN || err.position != 0)
         return bad_value(option, spec, &err);
     char given[64];
@@ -79,8 +116,11 @@ int cmd_material(const cmd_args *args, const char *option, size_t index, asp_mat
 {
     asp_error err;
     const char *spec = cmd_text_at(args, option, index);
-    if (asp_material_parse(NULL, spec, out, &err) == ASP_OK)
-        return CMD_OK;
+    void *memory;
+    if (asp_material_read(NULL, spec, out, &memory, &err) == ASP_OK)
+        return keep(memory) == CMD_OK ? CMD_OK : cmd_failed("more than 256 distributions from files");
+    if (from_file(&err))
+        return cmd_error(&err);
     return bad_value(option, spec, &err);
 }
 

@@ -7,9 +7,7 @@
 
 /* ---- every facet once */
 
-typedef void facet_function(void *context, aspi_slope slope);
-
-static void each_facet(const asp_height_field *f, facet_function *visit, void *context)
+void aspi_each_facet(const asp_height_field *f, aspi_facet_visitor *visit, void *context)
 {
     int last_x = f->periodic ? f->nx : f->nx - 1, last_y = f->periodic ? f->ny : f->ny - 1;
     for (int y = 0; y < last_y; ++y) {
@@ -125,7 +123,7 @@ asp_status asp_height_field_slopes(const asp_height_field *field, asp_slope_stat
                                    asp_error *err)
 {
     moments m = { 0 };
-    each_facet(field, add_moments, &m);
+    aspi_each_facet(field, add_moments, &m);
     if (!m.n)
         return asp_fail(err, ASP_EINVAL, "heights", "no facet has three known corners");
     double n = (double)m.n;
@@ -144,7 +142,7 @@ asp_status asp_height_field_slopes(const asp_height_field *field, asp_slope_stat
         return asp_fail(err, ASP_ENOMEM, "slopes", "out of memory");
     r->mean_x = s.mean_x;
     r->mean_y = s.mean_y;
-    each_facet(field, add_radial, r);
+    aspi_each_facet(field, add_radial, r);
     for (int i = 0; i < 90; ++i) {
         double inner = tan(i * ASPI_PI / 180), outer = tan((i + 1) * ASPI_PI / 180);
         s.P22[i] = i < 89 ? r->ring[i] / (n * ASPI_PI * (outer * outer - inner * inner)) : 0;

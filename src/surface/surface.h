@@ -30,6 +30,10 @@ static inline void aspi_square_slopes(int parity, double h00, double h10, double
     out[1].q = (parity ? h11 - h10 : h01 - h00) / dy;
 }
 
+/* The slopes of all facets with known corners, one after the other (slopes.c). */
+typedef void aspi_facet_visitor(void *context, aspi_slope slope);
+void aspi_each_facet(const asp_height_field *field, aspi_facet_visitor *visit, void *context);
+
 /* ---- the tracer */
 
 typedef struct aspi_tracer aspi_tracer;
