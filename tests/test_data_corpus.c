@@ -21,6 +21,9 @@
 #define LLVMFuzzerTestOneInput fuzz_lumos
 #include "fuzz/fuzz_lumos.c"
 #undef LLVMFuzzerTestOneInput
+#define LLVMFuzzerTestOneInput fuzz_slopes
+#include "fuzz/fuzz_slopes.c"
+#undef LLVMFuzzerTestOneInput
 
 typedef int fuzz_entry(const uint8_t *data, size_t size);
 
@@ -82,5 +85,6 @@ int main(void)
     replay_folder("csv", fuzz_csv);
     replay_folder("cornell", fuzz_cornell);
     replay_folder("lumos", fuzz_lumos);
+    replay_folder("slopes", fuzz_slopes);
     return finish();
 }
