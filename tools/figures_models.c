@@ -101,11 +101,15 @@ size_t figures_models(figure *out, size_t room)
 {
     static char name[FIGURE_MODELS][48], title[FIGURE_MODELS][120];
     size_t n = 0;
-    for (const asp_model *const *m = asp_models(); *m && n < room && n < FIGURE_MODELS; m++, n++) {
+    for (const asp_model *const *m = asp_models(); *m && n < room && n < FIGURE_MODELS; m++) {
+        asp_ndf ndf;
+        if (asp_ndf_parse(NULL, (*m)->name, &ndf, NULL) != ASP_OK)
+            continue;                        /* one that is made of data has no curves of its own */
         snprintf(name[n], sizeof name[n], "ndf-%s", (*m)->name);
         snprintf(title[n], sizeof title[n], "%s", (*m)->title);
         out[n] = (figure){ .name = name[n], .title = title[n], .source = (*m)->source,
                            .x_name = "theta_deg", .seconds = 0.05, .make = draw_model, .rows = *m };
+        n++;
     }
     return n;
 }

@@ -111,7 +111,10 @@ static void print_model(const asp_model *m)
         printf("sigma is exact to rounding.\n");
     if (t)
         printf("* Visible normals: %s.\n", t->visible);
-    printf("\n![%s](images/figures/ndf-%s.svg)\n\n", m->title, m->name);
+    asp_ndf ndf;
+    if (asp_ndf_parse(NULL, m->name, &ndf, NULL) == ASP_OK)      /* else it has no figure */
+        printf("\n![%s](images/figures/ndf-%s.svg)\n", m->title, m->name);
+    printf("\n");
     if (t && *t->figures) {
         printf("More: ");
         for (const char *at = t->figures; *at; at += strspn(at, " ")) {
