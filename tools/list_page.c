@@ -12,9 +12,10 @@
 
 #define SLOPES "in closed form"
 #define OF_STUDENT "that of `student_t`, an incomplete beta function by a series fitted to the gamma"
-#define PREPARED "by quadrature when the distribution is made, then one interpolation"
+#define PREPARED "by quadrature when the distribution is made, then a cubic spline"
 #define REJECTION_FREE "exact, a map of two uniform numbers without rejection"
-#define BY_TABLE "by tables of the distribution function, made with the distribution"
+#define BY_TABLE "the radius of the slope by tables made with the distribution, its azimuth by a few steps of " \
+    "Newton's; a continuous map of two uniform numbers without rejection"
 
 static const struct text { const char *name, *formula, *masking, *visible, *figures; } texts[] = {
     { "ggx", "D = alpha^2 / (pi (1 + (alpha^2 - 1) cos^2)^2)\n"
