@@ -97,6 +97,9 @@ ASP_CLONES static void ndf_density_n(const asp_shape *k, size_t n, const asp_rea
         out[i] = ndf_world_density(k, aspi_vector(mx[i], my[i], mz[i]));
 }
 
+/* A distribution whose formula is long may bring this loop or the visible normals' itself, in stages: it
+ * defines ASP_OWN_SIGMA_N or ASP_OWN_VISIBLE_N. */
+#ifndef ASP_OWN_SIGMA_N
 ASP_CLONES static void ndf_sigma_n(const asp_shape *k, size_t n, asp_real sign,
                                    const asp_real *ASP_RESTRICT wx, const asp_real *ASP_RESTRICT wy,
                                    const asp_real *ASP_RESTRICT wz, asp_real *ASP_RESTRICT out)
@@ -106,9 +109,8 @@ ASP_CLONES static void ndf_sigma_n(const asp_shape *k, size_t n, asp_real sign,
         out[i] = ndf_sigma_at(k, aspi_view(k, aspi_vector(sign * wx[i], sign * wy[i],
                                                           sign * wz[i])));
 }
+#endif
 
-/* A distribution whose formula is long may bring this loop itself, in stages: it defines
- * ASP_OWN_VISIBLE_N. */
 #ifndef ASP_OWN_VISIBLE_N
 ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT wx,
                                      const asp_real *ASP_RESTRICT wy,
@@ -139,4 +141,5 @@ ASP_CLONES static void ndf_normal_n(const asp_shape *k, size_t n, const asp_real
         mz[i] = m.z;
     }
 }
+#undef ASP_OWN_SIGMA_N
 #undef ASP_OWN_VISIBLE_N

@@ -22,7 +22,7 @@ static double prepared_log(const prepared_source *s, double r2)
 
 /* ------------------------------------------------------------------ splines */
 
-#define PREPARED_MOST 132
+#define PREPARED_MOST 196
 
 /* Coefficients, divided by 6, of the cubic B-spline on n cells of width h with values y[0 ... n],
  * y[j] = value[j step], and slopes d0, d1 at the ends: out[0 ... n + 2], out_step apart. */
@@ -309,23 +309,17 @@ static double prepared_seen(const void *context, double t)
     return aspi_exp_64(prepared_log(v->s, v->mu * v->mu + eta * eta) - v->base) * eta * eta * bracket;
 }
 
-/* Exponent of rho that the radius starts with: 1/3 for a view along the mean plane, else 1/5. */
-static double prepared_power(double q2)
-{
-    return 0.2 + (2.0 / 15) / (1 + 100 * q2);
-}
-
 static void prepared_tail_row(const prepared_source *s, double t0, double v, double *y)
 {
     const int n = PREPARED_TAIL_CELLS;
-    const double h = PREPARED_Z_END / n;
+    const double h = PREPARED_TAIL_END / n;
     prepared_panels panels;
     prepared_view view;
-    double root = v / (1 - v), q2 = root * root * root * root, unit, power = prepared_power(q2);
-    double low;
+    double root = v / (1 - v), q = root * root, power = PREPARED_POWER(q * q);
+    double unit, low;
     int i, panel = 0;
     view.s = s;
-    view.mu = t0 * root * root;
+    view.mu = t0 * q;
     view.base = prepared_log(s, view.mu * view.mu);
     unit = 0.5 * aspi_log_64(view.mu * view.mu + t0 * t0);
     low = s->low;
@@ -339,8 +333,9 @@ static void prepared_tail_row(const prepared_source *s, double t0, double v, dou
     prepared_integrate(prepared_seen, &view, low, view.mu > 0 ? 5 : 3, aspi_max_64(s->high, unit + 10), 0.4,
                        1e-17, &panels);
     for (i = 1; i <= n; i++) {
-        double z = i * h, rho = z * z * z * z;
-        y[i] = prepared_radius(&panels, prepared_seen, &view, rho, &panel) - power * aspi_log_64(rho) - unit;
+        double z = i * h, rho = (z * z) * (z * z) * z;
+        y[i] = prepared_radius(&panels, prepared_seen, &view, rho, &panel) - power * aspi_log_64(rho)
+             - unit;
     }
     y[0] = 4 * y[1] - 6 * y[2] + 4 * y[3] - y[4];
 }
@@ -361,6 +356,8 @@ static void prepared_tail_table(const prepared_source *s, double t0, double *out
         prepared_spline(m, 1, half + i, row, prepared_end_slope(half + i, row),
                         -prepared_end_slope(half + i + m * row, -row), out + i, row);
 }
+
+_Static_assert(PREPARED_END <= ASP_TABLE_NUMBERS, "the tables fit");
 
 asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
 {

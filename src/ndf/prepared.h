@@ -46,17 +46,20 @@ asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
  *     BELOW     log of J/(P22(mu) (mu^2 + T0^2)^(3/2)) over q^(1/4)/(1 + q^(1/4)): what is seen from below
  *               the mean plane keeps its relative accuracy
  *     NORMAL    log(r/sqrt e) over z = e^(1/4), e = -log Q(r), Q(r) the share of slopes beyond r
- *     TAIL      radius of the slopes that a view below the mean plane sees, over v and rho^(1/4),
- *               rho = -log of the share beyond; see prepared_kernel.h */
-#define PREPARED_AREA_CELLS 128
-#define PREPARED_BELOW_CELLS 128
-#define PREPARED_NORMAL_CELLS 96
-#define PREPARED_VIEW_CELLS 16
-#define PREPARED_TAIL_CELLS 26
+ *     TAIL      what a view below the mean plane sees are slopes of radius sqrt(mu^2 + eta^2): over v and
+ *               rho^(1/5), rho = -log of the share with larger eta, log(eta/sqrt(mu^2 + T0^2)) - p log rho with p =
+ *               PREPARED_POWER: while P22 is constant eta starts like rho^(1/5), or rho^(1/3) for mu = 0 */
+#define PREPARED_AREA_CELLS 64
+#define PREPARED_BELOW_CELLS 180
+#define PREPARED_NORMAL_CELLS 40
+#define PREPARED_VIEW_CELLS 19
+#define PREPARED_TAIL_CELLS 25
 #define PREPARED_TAIL_ROW (PREPARED_TAIL_CELLS + 3)
 #define PREPARED_LEAST 0x1p-53          /* the least share that is told from none; e, rho up to 36.8 */
 #define PREPARED_Z_END 2.4625           /* (-log of it)^(1/4), rounded up */
-#define PREPARED_VIEW_END 0.96875       /* v beyond this counts as this for TAIL */
+#define PREPARED_TAIL_END 2.0565        /* (-log of it)^(1/5), rounded up */
+#define PREPARED_VIEW_END .96875          /* v beyond this counts as this for TAIL */
+#define PREPARED_POWER(q2) (0.2 + (2.0 / 15) / (1 + 100 * (q2)))
 
 enum {
     PREPARED_LOG_MASS = PREPARED_OWN,
@@ -65,7 +68,8 @@ enum {
     PREPARED_AREA = PREPARED_OWN + 16,
     PREPARED_BELOW = PREPARED_AREA + PREPARED_AREA_CELLS + 3,
     PREPARED_NORMAL = PREPARED_BELOW + PREPARED_BELOW_CELLS + 3,
-    PREPARED_TAIL = PREPARED_NORMAL + PREPARED_NORMAL_CELLS + 3
+    PREPARED_TAIL = PREPARED_NORMAL + PREPARED_NORMAL_CELLS + 3,
+    PREPARED_END = PREPARED_TAIL + PREPARED_TAIL_ROW * (PREPARED_VIEW_CELLS + 3)
 };
 
 #endif

@@ -3,6 +3,8 @@
  * Read once per precision by a distribution's file, after its ndf_density. prepared.h says what the
  * tables hold. */
 
+#include "asperity/facet.h"
+
 #ifndef PREPARED_KERNEL_NAMES
 #define PREPARED_KERNEL_NAMES
 #define prepared_cell ASP_NDF_NAME(_prepared_cell)
@@ -11,25 +13,24 @@
 #define prepared_tail_at ASP_NDF_NAME(_prepared_tail_at)
 #define prepared_far ASP_NDF_NAME(_prepared_far)
 #define prepared_below ASP_NDF_NAME(_prepared_below)
+#define prepared_view ASP_NDF_NAME(_prepared_view)
 #define prepared_plain ASP_NDF_NAME(_prepared_plain)
 #define prepared_tail ASP_NDF_NAME(_prepared_tail)
-#define prepared_arc ASP_NDF_NAME(_prepared_arc)
+#define prepared_draw ASP_NDF_NAME(_prepared_draw)
+#define prepared_begin ASP_NDF_NAME(_prepared_begin)
+#define prepared_facet ASP_NDF_NAME(_prepared_facet)
 #define prepared_turn ASP_NDF_NAME(_prepared_turn)
 #define prepared_step ASP_NDF_NAME(_prepared_step)
+#define PREPARED_BLOCK 128
 #define PREPARED_TINY (ASP_PRECISION == 64 ? R(1e-200) : R(1e-24))
 #endif
 
-/* x in cells, within [0, n] (a NaN counts as 0): the cell as .x, the place in it as .y. By bits: the compilers
- * would branch on the ends. */
-ASP_FN asp_v2 prepared_cell(asp_real x, int n)
+/* x in cells, x < 2^31: the cell out of n, of which the last goes on beyond its end; a NaN counts as 0. By bits: the
+ * compilers would branch. */
+ASP_FN int prepared_cell(asp_real x, int n)
 {
-    asp_real end = (asp_real)n, y = aspi_select(x > R(0.0), x, R(0.0));
-    asp_real z = aspi_select(y < end, y, end);
-    asp_real cell = (asp_real)(int)z;
-    asp_v2 out;
-    out.x = aspi_select(cell < end, cell, end - R(1.0));
-    out.y = z - out.x;
-    return out;
+    int i = (int)aspi_select(x > R(0.0), x, R(0.0));
+    return i < n - 1 ? i : n - 1;
 }
 
 /* The inner two weights of the cubic B-spline, times 6; the outer ones are (1 - t)^3 and t^3. */
@@ -45,9 +46,9 @@ ASP_FN asp_v2 prepared_weights(asp_real t)
 /* The spline of n cells that starts at c[0], x in cells. */
 ASP_FN asp_real prepared_spline_at(const asp_real *c, int n, asp_real x)
 {
-    asp_v2 p = prepared_cell(x, n), w = prepared_weights(p.y);
-    int i = (int)p.x;
-    asp_real t = p.y, s = R(1.0) - t;
+    int i = prepared_cell(x, n);
+    asp_real t = x - (asp_real)i, s = R(1.0) - t;
+    asp_v2 w = prepared_weights(t);
     return (c[i] * (s * s * s) + c[i + 1] * w.x) + (c[i + 2] * w.y + c[i + 3] * (t * t * t));
 }
 
@@ -55,17 +56,24 @@ ASP_FN asp_real prepared_spline_at(const asp_real *c, int n, asp_real x)
 /* s J(|w|/s) for the larger part of sigma, w >= 0, through E: relative to sigma its error is that of E. */
 ASP_FN asp_real prepared_far(const asp_shape *k, asp_real h, asp_real b)
 {
-    asp_real y = aspi_sqrt(aspi_sqrt(b)), x = aspi_sqrt(h);
-    asp_real v = x / aspi_max(x + y, PREPARED_TINY) * R(PREPARED_AREA_CELLS);
-    asp_real unit = R(0.5) * b / aspi_max(h + aspi_sqrt(h * h + b), PREPARED_TINY);
-    return unit * aspi_max(prepared_spline_at(k->table + PREPARED_AREA, PREPARED_AREA_CELLS, v), R(0.0));
+    asp_real x = aspi_sqrt(h), sum = x + aspi_sqrt(aspi_sqrt(b)), up = h + aspi_sqrt(h * h + b);
+    asp_real inverse = R(1.0) / aspi_max(sum * up, PREPARED_TINY);       /* one division for two */
+    asp_real v = x * up * inverse * R(PREPARED_AREA_CELLS);
+    asp_real area = prepared_spline_at(k->table + PREPARED_AREA, PREPARED_AREA_CELLS, v);
+    return R(0.5) * b * sum * inverse * aspi_max(area, R(0.0));
+}
+
+/* q^(1/4)/(1 + q^(1/4)). */
+ASP_FN asp_real prepared_view(asp_real h, asp_real b)
+{
+    asp_real y = aspi_sqrt(aspi_sqrt(aspi_sqrt(b))), x = aspi_sqrt(aspi_sqrt(h));
+    return x / aspi_max(x + y, PREPARED_TINY);
 }
 
 /* The same relative to itself, through the density. */
 ASP_FN asp_real prepared_below(const asp_shape *k, asp_real h, asp_real s2, asp_real b)
 {
-    asp_real y = aspi_sqrt(aspi_sqrt(aspi_sqrt(b))), x = aspi_sqrt(aspi_sqrt(h));
-    asp_real v = x / aspi_max(x + y, PREPARED_TINY) * R(PREPARED_BELOW_CELLS);
+    asp_real v = prepared_view(h, b) * R(PREPARED_BELOW_CELLS);
     asp_real l2 = h * h + b, z2 = aspi_max(s2, ASP_PRECISION == 64 ? R(1e-150) : R(1e-18));
     asp_real d = ndf_density(k, h * h, z2) * s2;
     return d * (l2 * aspi_sqrt(l2))
@@ -76,8 +84,34 @@ ASP_FN asp_real prepared_below(const asp_shape *k, asp_real h, asp_real s2, asp_
 ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
 {
     asp_real h = aspi_abs(w), b = s2 * k->table[PREPARED_SCALE2];
-    asp_real above = prepared_far(k, h, b), below = prepared_below(k, h, s2, b);
-    return aspi_select(w < R(0.0), below, w + above);
+    return w < R(0.0) ? prepared_below(k, h, s2, b) : w + prepared_far(k, h, b);
+}
+
+/* The same in loops: views from below are rare, and a block without any skips their part. */
+#define ASP_OWN_SIGMA_N
+ASP_CLONES static void ndf_sigma_n(const asp_shape *k, size_t n, asp_real sign,
+                                   const asp_real *ASP_RESTRICT wx, const asp_real *ASP_RESTRICT wy,
+                                   const asp_real *ASP_RESTRICT wz, asp_real *ASP_RESTRICT out)
+{
+    asp_real w[PREPARED_BLOCK], s2[PREPARED_BLOCK];
+    size_t from, i, count;
+    for (from = 0; from < n; from += PREPARED_BLOCK) {
+        asp_bits signs = 0;
+        count = n - from < PREPARED_BLOCK ? n - from : PREPARED_BLOCK;
+        for (i = 0; i < count; i++) {
+            asp_v3 v = aspi_view(k, aspi_vector(sign * wx[from + i], sign * wy[from + i], sign * wz[from + i]));
+            w[i] = v.z;
+            s2[i] = aspi_length2(v);
+            out[from + i] = v.z + prepared_far(k, aspi_abs(v.z), s2[i] * k->table[PREPARED_SCALE2]);
+        }
+        for (i = 0; i < count; i++)
+            signs |= aspi_to_bits(w[i]);
+        if (signs >> (8 * sizeof signs - 1))
+            for (i = 0; i < count; i++) {
+                asp_real below = prepared_below(k, aspi_abs(w[i]), s2[i], s2[i] * k->table[PREPARED_SCALE2]);
+                out[from + i] = aspi_select(w[i] < R(0.0), below, out[from + i]);
+            }
+    }
 }
 #endif
 
@@ -107,12 +141,12 @@ ASP_FN asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
 /* The table of TAIL at v and z, both in cells. */
 ASP_FN asp_real prepared_tail_at(const asp_shape *k, asp_real v, asp_real z)
 {
-    asp_v2 p = prepared_cell(v, PREPARED_VIEW_CELLS), q = prepared_cell(z, PREPARED_TAIL_CELLS);
-    asp_v2 wp = prepared_weights(p.y), wq = prepared_weights(q.y);
-    asp_real sp = R(1.0) - p.y, sq = R(1.0) - q.y;
-    asp_real w0 = sp * sp * sp, w3 = p.y * p.y * p.y, z0 = sq * sq * sq, z3 = q.y * q.y * q.y;
+    int p = prepared_cell(v, PREPARED_VIEW_CELLS), q = prepared_cell(z, PREPARED_TAIL_CELLS);
+    asp_real tp = v - (asp_real)p, tq = z - (asp_real)q, sp = R(1.0) - tp, sq = R(1.0) - tq;
+    asp_v2 wp = prepared_weights(tp), wq = prepared_weights(tq);
+    asp_real w0 = sp * sp * sp, w3 = tp * tp * tp, z0 = sq * sq * sq, z3 = tq * tq * tq;
     const asp_real *c = k->table + PREPARED_TAIL;
-    int i = (int)p.x * PREPARED_TAIL_ROW + (int)q.x;
+    int i = p * PREPARED_TAIL_ROW + q;
 #define ROW(i) ((c[i] * z0 + c[(i) + 1] * wq.x) + (c[(i) + 2] * wq.y + c[(i) + 3] * z3))
     return (ROW(i) * w0 + ROW(i + PREPARED_TAIL_ROW) * wp.x)
          + (ROW(i + 2 * PREPARED_TAIL_ROW) * wp.y + ROW(i + 3 * PREPARED_TAIL_ROW) * w3);
@@ -123,93 +157,183 @@ ASP_FN asp_real prepared_tail_at(const asp_shape *k, asp_real v, asp_real z)
  * = 1 - u; h and s: height and length of the view, b = (s T0)^2. */
 ASP_FN asp_real prepared_tail(const asp_shape *k, asp_real h, asp_real b, asp_real u, asp_real rest)
 {
-    asp_real h2 = h * h, scale = aspi_sqrt(h2 + b);
-    asp_real x = aspi_sqrt(h), y = aspi_sqrt(aspi_sqrt(b));
-    asp_real v = x / aspi_max(x + y, PREPARED_TINY) * R(PREPARED_VIEW_CELLS / PREPARED_VIEW_END);
-    asp_real least = R(PREPARED_LEAST);
-    asp_real rho = aspi_abs(aspi_log_near(aspi_max(u, least), -rest)) + (ASP_PRECISION == 64 ? R(1e-30) : R(1e-20));
-    asp_real z = aspi_sqrt(aspi_sqrt(rho)) * R(PREPARED_TAIL_CELLS / PREPARED_Z_END);
+    asp_real h2 = h * h, y = aspi_sqrt(aspi_sqrt(b)), x = aspi_sqrt(h);
+    asp_real v = x / aspi_max(x + y, PREPARED_TINY);
+    asp_real rho = aspi_abs(aspi_log_near(aspi_max(u, R(PREPARED_LEAST)), -rest))
+                 + (ASP_PRECISION == 64 ? R(1e-30) : R(1e-20));
+    asp_real l = aspi_log(rho), z = R(1.0) + aspi_expm1(R(0.2) * l);
     asp_real power = R(0.2) + R(2.0 / 15.0) * b / aspi_max(b + R(100.0) * h2, PREPARED_TINY);
-    return scale * aspi_exp(power * aspi_log(rho) + prepared_tail_at(k, v, z));
+    asp_real w = prepared_tail_at(k, aspi_min(v, R(PREPARED_VIEW_END)) * R(PREPARED_VIEW_CELLS / PREPARED_VIEW_END),
+                                  aspi_min(z, R(PREPARED_TAIL_END)) * R(PREPARED_TAIL_CELLS / PREPARED_TAIL_END));
+    return aspi_sqrt(h2 + b) * aspi_exp(power * l + w);
 }
 
-/* Angle of the vector (x, y), y >= 0. */
-ASP_FN asp_real prepared_arc(asp_real y, asp_real x)
+/* Given the radius the azimuth has density proportional to c + g cos(phi) where that is positive, |phi| < end,
+ * and the distribution function F = c phi + g sin(phi), to be brought to t: one step towards it by F's
+ * parabola (Cauchy), which also finds the double zero of F' and F - t at the end. p: cos and sin of phi. */
+ASP_FN asp_real prepared_step(asp_real c, asp_real g, asp_real phi, asp_v2 p, asp_real t)
 {
-    return aspi_atan(y, x);
-}
-
-/* Given the radius the azimuth has density proportional to c + g cos(phi) where that is positive:
- * |phi| < end. With a = c/g its distribution function is F = sin(phi) + a phi, to be brought to t F(end); one
- * step towards it by F's parabola (Cauchy), which also finds the double zero at the end. */
-ASP_FN asp_real prepared_step(asp_real c, asp_real g, asp_real phi, asp_real t)
-{
-    asp_v2 p = aspi_sincos2pi(phi * R(0.5 / ASP_PI));
     asp_real miss = t - (g * p.y + c * phi);
     asp_real slope = aspi_max(c + g * p.x, R(0.0));
     asp_real root = slope * slope - R(2.0) * (g * p.y * miss);
-    return phi + R(2.0) * miss / aspi_max(slope + aspi_sqrt(aspi_max(root, R(0.0))), R(1e-12));
+    return R(2.0) * miss / aspi_max(slope + aspi_sqrt(aspi_max(root, R(0.0))), R(1e-12));
 }
 
+#define PREPARED_SINCOS(x) aspi_sincos2pi((x) * R(0.5 / ASP_PI))
+
 /* cos and sin of the azimuth. c, g: as above, of any common scale; r: sqrt(g^2 - c^2) where that is positive, else
- * not used. */
+ * not used. The start is 0.2 end away at most; steps bring F to 2e-3, 4e-6, 5e-8, 2e-13 of itself, and the last of
+ * them is a turn by a small angle. */
 ASP_FN asp_v2 prepared_turn(asp_real c, asp_real g, asp_real r, asp_real u)
 {
     asp_real scale = R(1.0) / aspi_max(aspi_abs(c) + g, PREPARED_TINY);
     asp_real a = c * scale, b = g * scale;
-    asp_real inside = c - g;
-    asp_real end = inside > R(0.0) ? R(ASP_PI) : prepared_arc(r, -c);
-    asp_real sine = inside > R(0.0) ? R(0.0) : r * scale;
-    asp_real t = R(1.0) - R(2.0) * u, f = aspi_abs(t);
-    asp_real target = f * (a * end + sine);
-    asp_real phi;
-    asp_v2 out;
-    phi = end * f * R(0.5);
-    phi = aspi_min(prepared_step(a, b, phi, target), end);
-    phi = aspi_min(prepared_step(a, b, phi, target), end);
-    phi = aspi_min(prepared_step(a, b, phi, target), end);
-    phi = aspi_min(prepared_step(a, b, phi, target), end);
-    phi = aspi_min(prepared_step(a, b, phi, target), end);
-    phi = aspi_min(prepared_step(a, b, phi, target), end);
-    out = aspi_sincos2pi(phi * R(0.5 / ASP_PI));
+    int all = c > g;
+    asp_real end = aspi_atan(aspi_select(all, R(0.0), r), aspi_select(all, R(-1.0), -c));
+    asp_real t = R(1.0) - R(2.0) * u, f = aspi_abs(t), w = aspi_sqrt(R(1.0) - f);
+    asp_real target = f * (a * end + aspi_select(all, R(0.0), r * scale));
+    /* exact at both ends, and within 1 % for c = -g (2 sin(asin(f)/3)) and c = 0 (asin f) */
+    asp_real k = R(0.9) + R(0.084) * aspi_min(a + a, R(0.0));
+    asp_real phi = end * (R(1.0) - w * (k + (R(1.0) - k) * (w * w)));
+    asp_real d, d2, sine, cosine;
+    asp_v2 p = PREPARED_SINCOS(phi), out;
+    phi = aspi_min(phi + prepared_step(a, b, phi, p, target), end);
+    p = PREPARED_SINCOS(phi);
+#if ASP_PRECISION == 64
+    phi = aspi_min(phi + prepared_step(a, b, phi, p, target), end);
+    p = PREPARED_SINCOS(phi);
+    phi = aspi_min(phi + prepared_step(a, b, phi, p, target), end);
+    p = PREPARED_SINCOS(phi);
+#endif
+    d = aspi_min(prepared_step(a, b, phi, p, target), end - phi);
+    d2 = d * d;
+    sine = d * (R(1.0) - d2 * (R(1.0 / 6.0) - d2 * R(1.0 / 120.0)));
+    cosine = R(1.0) - d2 * (R(0.5) - d2 * (R(1.0 / 24.0) - d2 * R(1.0 / 720.0)));
+    out.x = p.x * cosine - p.y * sine;
+    out.y = p.y * cosine + p.x * sine;
     out.y = t < R(0.0) ? -out.y : out.y;
     return out;
 }
 
-/* sigma = c + far. The share c of it, if c > 0, is drawn from all normals, and the share `far` from those
- * that a view below the mean plane sees: since (c + s x)+ = c + s (x + c/s)+ ... the sum over the azimuth is
- * that of both. The first goes outwards with u1 and the second comes back, so that the map is continuous. Given
- * the radius the azimuth is the same for both. */
-ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+/* A view and what is to be drawn from it: sigma = c + far. The share c of it, if c > 0, is drawn from all normals,
+ * and the share `far` from those that a view below the mean plane sees: the integrals over the azimuth of
+ * max(0, c + s x) and max(0, -c - s x), x a slope along the view, differ by 2 pi c. The first goes outwards with u1 and
+ * the second comes back, so that the map is continuous; given the radius the azimuth is the same for both. */
+typedef struct prepared_draw {
+    asp_real c, s, h, b;
+    asp_real inner;              /* positive: from all normals, */
+    asp_real e;                  /* e as in prepared_plain; */
+    asp_real share, rest;        /* else as in prepared_tail */
+} prepared_draw;
+
+ASP_FN prepared_draw prepared_begin(const asp_shape *k, asp_v3 v, asp_real u1)
 {
     asp_real s2 = v.x * v.x + v.y * v.y;
     asp_real scale = R(1.0) / aspi_sqrt(s2 + v.z * v.z);
-    asp_real c = v.z * scale, s = aspi_sqrt(s2) * scale, h = aspi_abs(c), ss = s * s;
-    asp_real b = ss * k->table[PREPARED_SCALE2];
-    asp_real far = prepared_far(k, h, b);
-    asp_real up = aspi_max(c, R(0.0)), sigma = up + far;
-    asp_real area = u1 * sigma;
-    asp_real inner = up - area;                     /* positive: from all normals */
+    asp_real c = v.z * scale, s = aspi_sqrt(s2) * scale, up = aspi_max(c, R(0.0));
+    asp_real b = s * s * k->table[PREPARED_SCALE2];
+    asp_real far = prepared_far(k, aspi_abs(c), b), sigma = up + far, down = R(1.0) - u1;
     asp_real inv_far = R(1.0) / aspi_max(far, PREPARED_TINY);
-    asp_real share = aspi_min(-inner * inv_far, R(1.0));
-    asp_real rest = aspi_min((R(1.0) - u1) * sigma * inv_far, R(1.0));
+    asp_real inner = up - u1 * sigma;
     asp_real left = aspi_max(inner / aspi_max(up, PREPARED_TINY), ASP_PRECISION == 64 ? R(0x1p-53) : R(0x1p-24));
-    asp_real e = aspi_abs(aspi_log(left));
-    asp_real plain = prepared_plain(k, e);
-    asp_real eta = prepared_tail(k, h, b, share, rest);
-    asp_real steep = aspi_sqrt(h * h + eta * eta);
-    asp_real x = aspi_select(inner > R(0.0), plain, steep);
-    asp_real z = aspi_select(inner > R(0.0), R(1.0), s);
-    asp_real g = s * x, cz = c * z;
-    asp_real root = aspi_select(inner > R(0.0), aspi_sqrt(aspi_max(g * g - cz * cz, R(0.0))), s * eta);
-    asp_v2 p = prepared_turn(cz, g, root, u2);
-    asp_real inverse = s2 > R(0.0) ? R(1.0) / aspi_sqrt(s2) : R(0.0);
-    asp_real ax = s2 > R(0.0) ? v.x * inverse : R(1.0), ay = v.y * inverse;
+    asp_real share = aspi_min(-inner * inv_far, R(1.0)), rest = aspi_min(down * sigma * inv_far, R(1.0));
+    prepared_draw d;
+    d.c = c;
+    d.s = s;
+    d.h = aspi_abs(c);
+    d.b = b;
+    d.inner = inner;
+    d.e = aspi_abs(aspi_log(left));
+    d.share = aspi_select(c > R(0.0), share, u1);
+    d.rest = aspi_select(c > R(0.0), rest, down);
+    return d;
+}
+
+/* The normal of the slope x/z at the azimuth that u2 draws; root: sqrt((s x)^2 - (c z)^2), as in prepared_turn. */
+ASP_FN asp_v3 prepared_facet(asp_v3 v, asp_real c, asp_real s, asp_real x, asp_real z, asp_real root, asp_real u2)
+{
+    asp_v2 p = prepared_turn(c * z, s * x, root, u2);
+    asp_real s2 = v.x * v.x + v.y * v.y, known = s2 > R(0.0) ? s2 : R(1.0), scale = R(1.0) / aspi_sqrt(known);
+    asp_real ax = s2 > R(0.0) ? v.x * scale : R(1.0), ay = v.y * scale;
     asp_v3 m;
-    p.x *= x;
-    p.y *= x;
-    m.x = p.x * ax - p.y * ay;
-    m.y = p.x * ay + p.y * ax;
+    m.x = x * (p.x * ax - p.y * ay);
+    m.y = x * (p.x * ay + p.y * ax);
     m.z = z;
     return m;
+}
+
+ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+{
+    prepared_draw d = prepared_begin(k, v, u1);
+    asp_real x, z, root;
+    if (d.inner > R(0.0)) {
+        x = prepared_plain(k, d.e);
+        z = R(1.0);
+        root = aspi_sqrt(aspi_max(d.s * x * (d.s * x) - d.c * d.c, R(0.0)));
+    } else {
+        asp_real eta = prepared_tail(k, d.h, d.b, d.share, d.rest);
+        x = aspi_sqrt(d.h * d.h + eta * eta);
+        z = d.s;
+        root = d.s * eta;
+    }
+    return prepared_facet(v, d.c, d.s, x, z, root, u2);
+}
+
+/* The same in loops over blocks: all as if drawn from all normals, those that are not are then collected and
+ * drawn again. */
+#define ASP_OWN_VISIBLE_N
+ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT wx,
+                                     const asp_real *ASP_RESTRICT wy,
+                                     const asp_real *ASP_RESTRICT wz,
+                                     const asp_real *ASP_RESTRICT u1,
+                                     const asp_real *ASP_RESTRICT u2, asp_real *ASP_RESTRICT mx,
+                                     asp_real *ASP_RESTRICT my, asp_real *ASP_RESTRICT mz)
+{
+    asp_real c[PREPARED_BLOCK], s[PREPARED_BLOCK], b[PREPARED_BLOCK], share[PREPARED_BLOCK];
+    asp_real rest[PREPARED_BLOCK], inner[PREPARED_BLOCK], x[PREPARED_BLOCK], z[PREPARED_BLOCK];
+    asp_real root[PREPARED_BLOCK], far[4][PREPARED_BLOCK];
+    int place[PREPARED_BLOCK];
+    size_t from, i, count, tails;
+    for (from = 0; from < n; from += PREPARED_BLOCK) {
+        count = n - from < PREPARED_BLOCK ? n - from : PREPARED_BLOCK;
+        for (i = 0; i < count; i++) {
+            asp_v3 v = aspi_view(k, aspi_at(wx, wy, wz, from + i));
+            prepared_draw d = prepared_begin(k, v, u1[from + i]);
+            c[i] = d.c;
+            s[i] = d.s;
+            b[i] = d.b;
+            share[i] = d.share;
+            rest[i] = d.rest;
+            inner[i] = d.inner;
+            x[i] = prepared_plain(k, d.e);
+            z[i] = R(1.0);
+            root[i] = aspi_sqrt(aspi_max(d.s * x[i] * (d.s * x[i]) - d.c * d.c, R(0.0)));
+        }
+        for (i = tails = 0; i < count; i++) {
+            place[tails] = (int)i;
+            tails += !(inner[i] > R(0.0));
+        }
+        for (i = 0; i < tails; i++) {
+            int j = place[i];
+            far[0][i] = aspi_abs(c[j]);
+            far[1][i] = b[j];
+            far[2][i] = share[j];
+            far[3][i] = rest[j];
+        }
+        for (i = 0; i < tails; i++)
+            far[0][i] = prepared_tail(k, far[0][i], far[1][i], far[2][i], far[3][i]);
+        for (i = 0; i < tails; i++) {
+            int j = place[i];
+            x[j] = aspi_sqrt(c[j] * c[j] + far[0][i] * far[0][i]);
+            z[j] = s[j];
+            root[j] = s[j] * far[0][i];
+        }
+        for (i = 0; i < count; i++) {
+            asp_v3 v = aspi_view(k, aspi_at(wx, wy, wz, from + i)), m;
+            m = aspi_normalize(aspi_facet_back(k, prepared_facet(v, c[i], s[i], x[i], z[i], root[i], u2[from + i])));
+            mx[from + i] = m.x;
+            my[from + i] = m.y;
+            mz[from + i] = m.z;
+        }
+    }
 }
