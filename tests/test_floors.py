@@ -173,18 +173,19 @@ def check_vectorised():
     hot += sorted(Path('src/core').glob('*_loops.h'))
     hot += sorted(Path('src/ndf').glob('*.h'))
     hot += [Path('src/ndf/histogram_rows.c')]
-    loops, replaced = {}, set()
+    loops, replaced = {}, {}      # replaced: by what macro a unit brings its own instead
     for path in hot:
         if not path.is_file():
             continue
         loops[path.as_posix()] = []
-        in_own = False
+        guard = None
         for number, line in enumerate(path.read_text().splitlines(), 1):
-            in_own = 'ifndef ASP_OWN_VISIBLE_N' in line or in_own and '#endif' not in line
+            opened = re.match(r'#ifndef (ASP_OWN_\w+)', line)
+            guard = opened.group(1) if opened else None if '#endif' in line else guard
             if re.search(r'for \(i = 0; i < n\b', line):
                 loops[path.as_posix()].append(number)
-                if in_own:
-                    replaced.add((path.as_posix(), number))
+                if guard:
+                    replaced[(path.as_posix(), number)] = guard
     total = 0
     units = sorted(Path('src/ndf').glob('*.c')) + sorted(Path('src/bsdf').glob('*.c'))
     units += [p for p in sorted(Path('src/core').glob('*.c'))]
@@ -208,10 +209,11 @@ def check_vectorised():
         # a header's loops count where the unit reads the header
         included = {unit.as_posix()} | {o.as_posix() for _, o in
                                         includes(unit, unit.read_text())}
-        own = any('define ASP_OWN_VISIBLE_N' in Path(p).read_text() for p in included)
+        own = {name for p in included
+               for name in re.findall(r'#define (ASP_OWN_\w+)', Path(p).read_text())}
         for path in included & set(loops):
             for line in loops[path]:
-                if own and (path, line) in replaced:
+                if replaced.get((path, line)) in own:
                     continue              # it brings its own, which are in its files
                 total += 1
                 count = seen.get((path, line), 0)
