@@ -106,6 +106,18 @@ float     asp_sggx_sigmaf(const asp_sggxf *flakes, asp_vec3f w);
 float     asp_sggx_pdf_visiblef(const asp_sggxf *flakes, asp_vec3f wi, asp_vec3f m);
 asp_vec3f asp_sggx_sample_visiblef(const asp_sggxf *flakes, asp_vec3f wi, float u1, float u2);
 
+/* Batches, as in asperity.h: bit for bit the single calls, outputs may be inputs. */
+void asp_sggx_D_n(const asp_sggx *flakes, size_t n, asp_cvec3s m, double *out);
+void asp_sggx_sigma_n(const asp_sggx *flakes, size_t n, asp_cvec3s w, double *out);
+void asp_sggx_pdf_visible_n(const asp_sggx *flakes, size_t n, asp_cvec3s wi, asp_cvec3s m, double *out);
+void asp_sggx_sample_visible_n(const asp_sggx *flakes, size_t n, asp_cvec3s wi, const double *u1,
+                               const double *u2, asp_vec3s m);
+void asp_sggx_D_nf(const asp_sggxf *flakes, size_t n, asp_cvec3sf m, float *out);
+void asp_sggx_sigma_nf(const asp_sggxf *flakes, size_t n, asp_cvec3sf w, float *out);
+void asp_sggx_pdf_visible_nf(const asp_sggxf *flakes, size_t n, asp_cvec3sf wi, asp_cvec3sf m, float *out);
+void asp_sggx_sample_visible_nf(const asp_sggxf *flakes, size_t n, asp_cvec3sf wi, const float *u1,
+                                const float *u2, asp_vec3sf m);
+
 #ifdef __cplusplus
 }
 #endif

@@ -169,7 +169,7 @@ def check_vectorised():
         print('  gcc is absent: left out')
         return
     hot = [Path('include/asperity/ndf_loops.h'), Path('src/bsdf/bsdf_loops.h'), Path('src/core/facets.c'), Path('src/core/material.c'),
-           Path('src/core/material_batch.c')]
+           Path('src/core/material_batch.c'), Path('src/core/sggx.c')]
     hot += sorted(Path('src/core').glob('*_loops.h'))
     hot += sorted(Path('src/ndf').glob('*.h'))
     hot += [Path('src/ndf/histogram_rows.c')]

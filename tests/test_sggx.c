@@ -245,6 +245,38 @@ static void check_continuity(const struct matrix *a, const asp_sggx *k)
     below(a->name, "continuous: a step of 1e-9", jump, 1e-5);
 }
 
+/* Loops give the bits of single calls, in place too. */
+#define MANY 300
+#define DEFINE_BATCHES(NAME, REAL, FLAKES, V3, V3S, CV3S, S, NS)                                          \
+    static void NAME(const char *name, const FLAKES *k)                                                   \
+    {                                                                                                     \
+        static REAL x[MANY], y[MANY], z[MANY], u[MANY], v[MANY], ax[MANY], ay[MANY], az[MANY], out[4][MANY]; \
+        const CV3S w = { x, y, z }, m = { ax, ay, az };                                                   \
+        const V3S to = { ax, ay, az }, over = { x, y, z };                                                \
+        int i, bad = 0;                                                                                   \
+        for (i = 0; i < MANY; i++) {                                                                      \
+            asp_vec3 d = anywhere();                                                                      \
+            x[i] = (REAL)d.x; y[i] = (REAL)d.y; z[i] = (REAL)d.z;                                         \
+            u[i] = (REAL)(0.999 * uniform(NULL)); v[i] = (REAL)(0.999 * uniform(NULL));                   \
+        }                                                                                                 \
+        asp_sggx_sample_visible_##NS(k, MANY, w, u, v, to);                                               \
+        asp_sggx_pdf_visible_##NS(k, MANY, w, m, out[0]);                                                 \
+        asp_sggx_D_##NS(k, MANY, m, out[1]);                                                              \
+        asp_sggx_sigma_##NS(k, MANY, w, out[2]);                                                          \
+        for (i = 0; i < MANY; i++) {                                                                      \
+            V3 wi = { x[i], y[i], z[i] }, h = asp_sggx_sample_visible##S(k, wi, u[i], v[i]);              \
+            bad += h.x != ax[i] || h.y != ay[i] || h.z != az[i];                                          \
+            bad += asp_sggx_pdf_visible##S(k, wi, h) != out[0][i] || asp_sggx_D##S(k, h) != out[1][i];    \
+            bad += asp_sggx_sigma##S(k, wi) != out[2][i];                                                 \
+        }                                                                                                 \
+        asp_sggx_sample_visible_##NS(k, MANY, w, u, v, over);                                             \
+        for (i = 0; i < MANY; i++)                                                                        \
+            bad += x[i] != ax[i] || y[i] != ay[i] || z[i] != az[i];                                       \
+        below(name, #NAME ": bits that differ from the single calls'", bad, 0);                           \
+    }
+DEFINE_BATCHES(batches_64, double, asp_sggx, asp_vec3, asp_vec3s, asp_cvec3s, , n)
+DEFINE_BATCHES(batches_32, float, asp_sggxf, asp_vec3f, asp_vec3sf, asp_cvec3sf, f, nf)
+
 static void check_makers(void)
 {
     asp_vec3 axis = { 3, -4, 12 }, n = { 3 / 13.0, -4 / 13.0, 12 / 13.0 }, across = { 0.8, 0.6, 0 };
@@ -272,6 +304,7 @@ int main(void)
     size_t samples = sample_count(40000), i;
     for (i = 0; i < MATRICES; i++) {
         asp_sggx k;
+        asp_sggxf kf;
         if (asp_sggx_from_matrix(matrices[i].A, &k, NULL) != ASP_OK) {
             say(0, matrices[i].name);
             continue;
@@ -280,6 +313,9 @@ int main(void)
         check_relation(&matrices[i], &k);
         check_sampler(&matrices[i], &k, samples);
         check_continuity(&matrices[i], &k);
+        kf = asp_sggx_narrow(&k);
+        batches_64(matrices[i].name, &k);
+        batches_32(matrices[i].name, &kf);
     }
     check_makers();
     printf("%d passed, %d failed\n", passed, failed);

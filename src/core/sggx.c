@@ -119,17 +119,22 @@ asp_sggxf asp_sggx_narrow(const asp_sggx *k)
 #undef ASP_PRECISION
 
 #else
-#include "asperity/facet.h"
+#include "core/blocks.h"
 
 #ifndef SGGX_NAMES
 #define SGGX_NAMES
-#define SGGX_CALL_64(x) x
-#define SGGX_CALL_32(x) ASP_PASTE(x, f)
-#define SGGX_CALL ASP_NAME(SGGX_CALL)
 #define SGGX_VALUE_64 asp_sggx
 #define SGGX_VALUE_32 asp_sggxf
 #define SGGX_VALUE ASP_NAME(SGGX_VALUE)
 #define sggx_apply ASP_NAME(sggx_apply)
+#define sggx_density ASP_NAME(sggx_density)
+#define sggx_area ASP_NAME(sggx_area)
+#define sggx_visible_density ASP_NAME(sggx_visible_density)
+#define sggx_visible ASP_NAME(sggx_visible)
+#define sggx_loop_density ASP_NAME(sggx_loop_density)
+#define sggx_loop_area ASP_NAME(sggx_loop_area)
+#define sggx_loop_visible_density ASP_NAME(sggx_loop_visible_density)
+#define sggx_loop_visible ASP_NAME(sggx_loop_visible)
 #endif
 
 /* A w: the view in the space where the flakes are those of a sphere. */
@@ -140,7 +145,7 @@ ASP_FN asp_v3 sggx_apply(const SGGX_VALUE *k, asp_v3 w)
 }
 
 /* 1 / (pi |A| |A^-T m|^4), Walter et al. eq. 1 without ||A n|| and without a horizon. */
-asp_real SGGX_CALL(asp_sggx_D)(const SGGX_VALUE *k, asp_v3 m)
+ASP_FN asp_real sggx_density(const SGGX_VALUE *k, asp_v3 m)
 {
     asp_real x = m.x / k->a11;
     asp_real y = (m.y - k->a12 * x) / k->a22;
@@ -150,22 +155,22 @@ asp_real SGGX_CALL(asp_sggx_D)(const SGGX_VALUE *k, asp_v3 m)
 }
 
 /* sqrt(w^T S w) = |A w| (eq. 26 with C_e^2 = |A|/pi). */
-asp_real SGGX_CALL(asp_sggx_sigma)(const SGGX_VALUE *k, asp_v3 w)
+ASP_FN asp_real sggx_area(const SGGX_VALUE *k, asp_v3 w)
 {
     asp_v3 a = sggx_apply(k, w);
     return aspi_sqrt(aspi_dot(a, a));
 }
 
-asp_real SGGX_CALL(asp_sggx_pdf_visible)(const SGGX_VALUE *k, asp_v3 wi, asp_v3 m)
+ASP_FN asp_real sggx_visible_density(const SGGX_VALUE *k, asp_v3 wi, asp_v3 m)
 {
     asp_real c = aspi_dot(wi, m);
-    asp_real p = c * SGGX_CALL(asp_sggx_D)(k, m) / SGGX_CALL(asp_sggx_sigma)(k, wi);
-    return c <= R(0.0) ? R(0.0) : aspi_finite(p);
+    asp_real p = aspi_finite(c * sggx_density(k, m) / sggx_area(k, wi));
+    return c <= R(0.0) ? R(0.0) : p;
 }
 
 /* Rays along A wi hit the sphere uniformly over its disk: p there, m = A^T p. The disk's frame is Duff et
  * al.'s (2017). */
-asp_v3 SGGX_CALL(asp_sggx_sample_visible)(const SGGX_VALUE *k, asp_v3 wi, asp_real u1, asp_real u2)
+ASP_FN asp_v3 sggx_visible(const SGGX_VALUE *k, asp_v3 wi, asp_real u1, asp_real u2)
 {
     asp_v3 e = aspi_normalize(sggx_apply(k, wi)), p;
     asp_real sign = e.z < R(0.0) ? R(-1.0) : R(1.0);
@@ -178,5 +183,82 @@ asp_v3 SGGX_CALL(asp_sggx_sample_visible)(const SGGX_VALUE *k, asp_v3 wi, asp_re
     p.z = h * e.z - x * (sign * e.x) - y * e.y;
     return aspi_normalize(aspi_vector(k->a11 * p.x, k->a12 * p.x + k->a22 * p.y,
                                       (k->a13 * p.x + k->a23 * p.y) + k->a33 * p.z));
+}
+
+/* ---- single calls */
+
+asp_real ASPI_CALL(asp_sggx_D)(const SGGX_VALUE *k, asp_v3 m) { return sggx_density(k, m); }
+
+asp_real ASPI_CALL(asp_sggx_sigma)(const SGGX_VALUE *k, asp_v3 w) { return sggx_area(k, w); }
+
+asp_real ASPI_CALL(asp_sggx_pdf_visible)(const SGGX_VALUE *k, asp_v3 wi, asp_v3 m)
+{
+    return sggx_visible_density(k, wi, m);
+}
+
+asp_v3 ASPI_CALL(asp_sggx_sample_visible)(const SGGX_VALUE *k, asp_v3 wi, asp_real u1, asp_real u2)
+{
+    return sggx_visible(k, wi, u1, u2);
+}
+
+/* ---- loops: the outputs may be inputs, an element is read before it is written */
+
+ASP_CLONES static void sggx_loop_density(SGGX_VALUE k, size_t n, asp_cv3s m, asp_real *out)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++)
+        out[i] = sggx_density(&k, aspi_at(m.x, m.y, m.z, i));
+}
+
+ASP_CLONES static void sggx_loop_area(SGGX_VALUE k, size_t n, asp_cv3s w, asp_real *out)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++)
+        out[i] = sggx_area(&k, aspi_at(w.x, w.y, w.z, i));
+}
+
+ASP_CLONES static void sggx_loop_visible_density(SGGX_VALUE k, size_t n, asp_cv3s wi,
+                                                 asp_cv3s m, asp_real *out)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++)
+        out[i] = sggx_visible_density(&k, aspi_at(wi.x, wi.y, wi.z, i), aspi_at(m.x, m.y, m.z, i));
+}
+
+ASP_CLONES static void sggx_loop_visible(SGGX_VALUE k, size_t n, asp_cv3s wi, const asp_real *u1,
+                                         const asp_real *u2, asp_v3s m)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        asp_v3 v = sggx_visible(&k, aspi_at(wi.x, wi.y, wi.z, i), u1[i], u2[i]);
+        m.x[i] = v.x;
+        m.y[i] = v.y;
+        m.z[i] = v.z;
+    }
+}
+
+void ASPI_CALL(asp_sggx_D_n)(const SGGX_VALUE *k, size_t n, asp_cv3s m, asp_real *out)
+{
+    sggx_loop_density(*k, n, m, out);
+}
+
+void ASPI_CALL(asp_sggx_sigma_n)(const SGGX_VALUE *k, size_t n, asp_cv3s w, asp_real *out)
+{
+    sggx_loop_area(*k, n, w, out);
+}
+
+void ASPI_CALL(asp_sggx_pdf_visible_n)(const SGGX_VALUE *k, size_t n, asp_cv3s wi, asp_cv3s m, asp_real *out)
+{
+    sggx_loop_visible_density(*k, n, wi, m, out);
+}
+
+void ASPI_CALL(asp_sggx_sample_visible_n)(const SGGX_VALUE *k, size_t n, asp_cv3s wi, const asp_real *u1,
+                                          const asp_real *u2, asp_v3s m)
+{
+    sggx_loop_visible(*k, n, wi, u1, u2, m);
 }
 #endif

@@ -7,6 +7,7 @@
 #ifndef ASP_PRECISION
 #include "asperity.h"
 #include "asperity_ndf.h"
+#include "asperity_study.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -27,10 +28,12 @@ static const char *const ellipsoids[] = {
 /* ---- FNV-1a, 64 bits, over 8-byte words */
 
 enum { Q_MAKE, Q_MAP, Q_D, Q_P22, Q_SIGMA, Q_G1, Q_LAMBDA, Q_G2, Q_NORMAL, Q_VISIBLE, Q_PDF_NORMAL,
-       Q_PDF_VISIBLE, Q_FRESNEL, Q_EVAL, Q_EVAL_COS, Q_PDF, Q_SAMPLE, QUANTITIES };
+       Q_PDF_VISIBLE, Q_FRESNEL, Q_EVAL, Q_EVAL_COS, Q_PDF, Q_SAMPLE, Q_FORMS, Q_ORACLE, Q_WALTER, Q_SGGX,
+       QUANTITIES };
 static const char *const quantity[QUANTITIES] = {
     "make", "map", "D", "P22", "sigma", "G1", "lambda", "G2", "sample_normal", "sample_visible",
-    "pdf_normal", "pdf_visible", "fresnel", "eval", "eval_cos", "pdf", "sample"
+    "pdf_normal", "pdf_visible", "fresnel", "eval", "eval_cos", "pdf", "sample",
+    "student_lambda", "oracle", "walter", "sggx"
 };
 
 typedef uint64_t hashes[QUANTITIES];
@@ -150,6 +153,66 @@ static int one_histogram(int verbose, hashes wide, hashes narrow)
     return 0;
 }
 
+static double next_uniform(void *unused)
+{
+    (void)unused;
+    return uniform();
+}
+
+static void hash_vector(uint64_t *h, asp_vec3 v)
+{
+    hash_64(h, v.x);
+    hash_64(h, v.y);
+    hash_64(h, v.z);
+}
+
+/* asperity_study.h, and the STD paper's maskings. */
+static int study(hashes wide, hashes narrow)
+{
+    static const char *const forms[] = { "exact", "hypergeometric", "integer", "half_integer", "rational" };
+    static const char *const surfaces[] = { "ggx:alpha=0.5,mean_y=0.4", "beckmann:alpha=0.3",
+                                            "student_t:alpha=0.4,gamma=3.3,mean_x=0.2" };
+    static const double A[9] = { 0.3, 0.1, 0.05, -0.02, 0.2, 0, 0.3, -0.5, 1 };
+    static asp_oracle oracle;
+    asp_sggx flakes;
+    asp_sggxf small;
+    int i, j, kind, bad = asp_sggx_from_matrix(A, &flakes, NULL) != ASP_OK;
+    state = 98765;
+    for (i = 0; i < 60; i++)
+        for (j = 0; j < 5; j++) {
+            double lambda = 0;
+            asp_student_lambda(forms[j], j == 3 ? i + 2.5 : i + 2, 0.04 * i, &lambda, NULL);
+            hash_64(&wide[Q_FORMS], lambda);
+        }
+    for (i = 0; i < 3; i++)
+        for (kind = 0; kind < 2; kind++) {
+            asp_ndf ndf;
+            bad += asp_ndf_parse(NULL, surfaces[i], &ndf, NULL)
+                || asp_oracle_make(&ndf, kind ? ASP_ORACLE_RADIAL : ASP_ORACLE_STUDENT, &oracle, NULL);
+            for (j = 0; !bad && j < COUNT; j++) {
+                asp_vec3 w = direction();
+                w.z = w.z < -0.1 ? -w.z : w.z;
+                hash_vector(&wide[Q_ORACLE], asp_oracle_visible(&oracle, w, next_uniform, NULL));
+            }
+        }
+    small = asp_sggx_narrow(&flakes);
+    for (i = 0; i < COUNT; i++) {
+        asp_vec3 w = direction(), m;
+        asp_vec3f v, n;
+        double u1 = uniform(), u2 = uniform();
+        v.x = (float)w.x; v.y = (float)w.y; v.z = (float)w.z;
+        m = asp_sggx_sample_visible(&flakes, w, u1, u2);
+        n = asp_sggx_sample_visiblef(&small, v, (float)u1, (float)u2);
+        hash_vector(&wide[Q_SGGX], m);
+        hash_64(&wide[Q_SGGX], asp_sggx_pdf_visible(&flakes, w, m));
+        hash_32(&narrow[Q_SGGX], n.x + 2 * n.y + 4 * n.z);
+        hash_32(&narrow[Q_SGGX], asp_sggx_pdf_visiblef(&small, v, n));
+        w.z = fabs(w.z);
+        hash_vector(&wide[Q_WALTER], asp_sample_visible_walter(A, w, u1, u2));
+    }
+    return bad;
+}
+
 int main(int argc, char **argv)
 {
     hashes wide, narrow;
@@ -179,6 +242,7 @@ int main(int argc, char **argv)
         }
     }
     refused += one_histogram(verbose, wide, narrow);
+    refused += study(wide, narrow);
     for (i = 0; i < QUANTITIES; i++)
         printf("%-16s float64 %016llx float32 %016llx\n", quantity[i],
                (unsigned long long)wide[i], (unsigned long long)narrow[i]);
