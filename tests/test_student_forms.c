@@ -3,7 +3,7 @@
  * The exact form (asp_lambda's, which the golden files hold) against the marginal's own integrals; the
  * other forms where they must agree, and where the paper's arithmetic must fail, by how much the header
  * says. */
-#include "asperity.h"
+#include "asperity_study.h"
 #include "student_reference.h"
 
 #include <stdio.h>

@@ -1,5 +1,6 @@
 /* cmd_eval.c - one more column: a quantity at the directions of each row */
 #include "asperity_ndf.h"
+#include "asperity_study.h"
 #include "csv.h"
 #include "precision.h"
 

@@ -3,6 +3,7 @@
  * Times differ from machine to machine and from run to run, so no test compares them. With --cost the
  * figure is drawn from its own numbers, NAME.csv of an earlier run, and then it is the same everywhere. */
 #define _XOPEN_SOURCE 700
+#include "asperity_study.h"
 #include "csv.h"
 #include "figures.h"
 

@@ -3,6 +3,7 @@
  * Where a caption does not say what it integrates, the norm is the one that gives its numbers: Figure 5,
  * the integral of |dG1| over the hemisphere; Figure 10, the difference of the two integrals, signs kept.
  * Roughnesses and gammas that only the paper's pictures show are those of its Figure 8 and captions. */
+#include "asperity_study.h"
 #include "energy.h"
 #include "figures.h"
 

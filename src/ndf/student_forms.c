@@ -8,6 +8,7 @@
  *
  * (eq. 13 with the powers of n drawn together) or, with the same a, eq. 21; they differ in S2 and in
  * where the 1/2 went. */
+#include "asperity_study.h"
 #include "ndf/student.h"
 
 #define ASP_PRECISION 64
