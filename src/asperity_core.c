@@ -78,6 +78,8 @@
 #undef ASP_PRECISION
 #include "ndf/student_forms.c"
 #undef ASP_PRECISION
+#include "ndf/student_guess.c"
+#undef ASP_PRECISION
 #include "ndf/student_prepare.c"
 #undef ASP_PRECISION
 #include "ndf/student_t.c"

@@ -42,8 +42,27 @@ enum {
     STUDENT_Y32 = 58,            /* 12 of the quantile's R; */
     STUDENT_P64 = 72,            /* 24 of the same for float64, */
     STUDENT_B64 = 96,            /* 24 of B, */
-    STUDENT_Y64 = 120            /* 26 of R */
+    STUDENT_Y64 = 120,           /* 26 of R */
+    /* sigma from above without a power (student_above), 0 where its polynomial does not reach 2e-7 */
+    STUDENT_ABOVE = 150,
+    STUDENT_LINEAR = 151,        /* A, B, K of its denominator */
+    STUDENT_S32 = 154,           /* its value at w = 0 for s = 1, 18 coefficients */
+    /* first guess of the search (student_guess), 0 where the longer one is needed */
+    STUDENT_SHORT = 174,
+    STUDENT_ONE_LESS = 175,      /* 1 - 1/n */
+    STUDENT_END = 176,           /* 2/end of the guess's argument: left, right */
+    STUDENT_LEFT = 178,          /* 6 x 5 coefficients */
+    STUDENT_RIGHT = 208,         /* 6 x 5; */
+    STUDENT_SCALE_RIGHT = 238    /* 14 of 1/(sqrt y_0 + e) */
 };
+
+/* The guess: scale of the view's argument c/(c + STUDENT_VIEW s), slope at 0 on the right, largest
+ * exponent (half the logarithm of the smallest share that it is fitted to). */
+#define STUDENT_VIEW 3.0
+#define STUDENT_SLOPE 1.3
+#define STUDENT_FAR_END 8.5
+#define STUDENT_DEGREE 6    /* coefficients along its own argument, */
+#define STUDENT_ACROSS 5    /* and along the view's */
 
 #define STUDENT_A 2.0
 
@@ -57,6 +76,12 @@ enum {
 
 /* Fills out->table for n > 1/2, infinity included. */
 void aspi_student_prepare(asp_ndf *out, double n);
+
+/* The part of it in student_guess.c: from the rest of the table. */
+void aspi_student_fit(asp_ndf *out);
+
+/* Values at 32 Chebyshev points of the first kind -> the first `count` power coefficients. */
+void aspi_student_coefficients(const double value[32], int count, double *out);
 
 /* Gamma(n + 1/2) / (Gamma(n) sqrt n), n > 0. */
 double aspi_gamma_ratio(double n);

@@ -74,7 +74,7 @@ static void student_exact(double n, double m0, double x, double *t_m, double *j_
 }
 
 /* Values at the Chebyshev points of the first kind -> the first `count` power coefficients. */
-static void student_coefficients(const double value[STUDENT_NODES], int count, double *out)
+void aspi_student_coefficients(const double value[STUDENT_NODES], int count, double *out)
 {
     double row[2][STUDENT_NODES] = {{0}, {0}}, c[STUDENT_NODES];
     double *now = row[0], *before = row[1];
@@ -185,21 +185,22 @@ void aspi_student_prepare(asp_ndf *out, double n_wanted)
     t[STUDENT_INV_BETA] = n / (n - 0.5);
     t[STUDENT_BELOW] = 1 / (2 * n - 1);
     student_nodes(n, t[STUDENT_M0], p, b);
-    student_coefficients(p, 12, t + STUDENT_P32);
-    student_coefficients(p, 24, t + STUDENT_P64);
-    student_coefficients(b, 12, t + STUDENT_B32);
-    student_coefficients(b, 24, t + STUDENT_B64);
+    aspi_student_coefficients(p, 12, t + STUDENT_P32);
+    aspi_student_coefficients(p, 24, t + STUDENT_P64);
+    aspi_student_coefficients(b, 12, t + STUDENT_B32);
+    aspi_student_coefficients(b, 24, t + STUDENT_B64);
 
     t[STUDENT_Y_N] = m;
     t[STUDENT_Y_N + 1] = 1 / m;
     t[STUDENT_Y_WIDTH] = sqrt(n / m);
     student_nodes(m, student_m0(m), p, b);
-    student_coefficients(b, 24, bm);
+    aspi_student_coefficients(b, 24, bm);
     t0 = student_m0(m) * (2 * m - 1) / (2 * m);
     student_quantile(m, t0, bm, STUDENT_Y_END_32, p);
-    student_coefficients(p, 12, t + STUDENT_Y32);
+    aspi_student_coefficients(p, 12, t + STUDENT_Y32);
     student_quantile(m, t0, bm, STUDENT_Y_END_64, p);
-    student_coefficients(p, 26, t + STUDENT_Y64);
+    aspi_student_coefficients(p, 26, t + STUDENT_Y64);
+    aspi_student_fit(out);
 }
 
 #undef STUDENT_NODES
