@@ -5,6 +5,7 @@
  *   3  Height fields  make, read, slopes; the fabricated measurement
  *   4  Fitting        distributions fitted to a measurement
  *   5  Laws           what every distribution must obey, checked
+ *   6  Families       the nearest distribution of another model
  *
  * Everything here may allocate and do file I/O; nothing prints or exits. Handles are freed by their
  * _free function, which takes NULL. A finished handle is read-only: any number of threads may
@@ -392,6 +393,62 @@ asp_status asp_laws_check(const asp_ndf *ndf, const asp_laws_options *options,
  * correlated, skewed up to mean slope 2). Writes spec number `index` and returns 1; returns 0 past
  * the last one or when size is too small (256 is enough). */
 int asp_laws_spec(const asp_model *model, size_t index, char *spec, size_t size);
+
+/* ------------------------------------------------------------------ 6  Families
+ *
+ * A distribution as text, and the one of another model that comes nearest to it. */
+
+/* `name:key=value,...` with `digits` significant digits (17 read back to rounding), keys at their
+ * defaults of a map left out; the ellipsoid as its matrix. Returns the length without the final 0, or
+ * 0 when size is too small (ASP_NDF_TEXT is enough). */
+#define ASP_NDF_TEXT 512
+size_t asp_ndf_text(const asp_ndf *ndf, int digits, char *text, size_t size);
+
+/* A distance between the density D of a model and that of a target. */
+typedef struct asp_norm {
+    const char *name;
+    const char *definition;               /* a line; m is the model's density, d the target's */
+} asp_norm;
+
+/* theta     sqrt(int (m - d)^2 / int d^2) over the angle from the mean plane's normal, as a plot of D
+ *           over theta shows it
+ * l2, l2_cos    the same over the solid angle, without and with the cosine
+ * l1_cos    int |m - d| cos: 0 to 2; also int |P22_m - P22_d| over slopes
+ * slope     sqrt(int (P22_m - P22_d)^2 / int P22_d^2) over slopes; knows no scale
+ * log       root of the mean over cos/pi of log((m + e)/(d + e))^2, e = 0.001 of the target's D at its
+ *           mean slope
+ * peak      theta, but only among those that have the target's density at the mean slope
+ * Ends with NULL. */
+#define ASP_NORM_LIMIT 8
+const asp_norm *const *asp_norms(void);
+
+/* What stays as it is. Set to zero for: nothing. */
+typedef struct asp_nearest_options {
+    const char *norm;                     /* NULL: "theta" */
+    double   alpha;                       /* 0: free; else the roughness of the slope map,
+                                             sqrt(alpha_x alpha_y), in [1e-5, 100] */
+    unsigned fixed;                       /* bit k: shape number k stays at shape[k] */
+    double   shape[ASP_SHAPE_NUMBERS];
+} asp_nearest_options;
+
+typedef struct asp_nearest_result {
+    asp_ndf  ndf;
+    double   error;                       /* in the norm asked for */
+    double   errors[ASP_NORM_LIMIT];      /* in all norms, in the order of asp_norms() */
+    double   peak;                        /* P22 at the mean slope over the target's */
+    int      at_bound[ASP_SHAPE_NUMBERS]; /* a free shape number at the end of its range: -1, 1 */
+    size_t   evaluations;                 /* densities compared */
+} asp_nearest_result;
+
+/* The nearest distribution of a model whose standard surface is round: through a slope map with the
+ * target's axes and mean slope, the roughness and the shape numbers free. A model whose shape numbers
+ * carry the roughness keeps sqrt(alpha_x alpha_y) = 1 (unless alpha says otherwise), and the first of
+ * them is what `peak` is solved for. Deterministic; up to some seconds when two numbers are free and the
+ * model prepares tables.
+ * ASP_EUNKNOWN (norm), ASP_EINVAL: a fixed number out of range; peak with nothing free to reach it, or
+ * out of reach; ASP_ENOMEM. */
+asp_status asp_nearest(const asp_ndf *target, const asp_model *model,
+                       const asp_nearest_options *options, asp_nearest_result *out, asp_error *err);
 
 #ifdef __cplusplus
 }

@@ -2,7 +2,7 @@
 #include "cmd.h"
 
 #define COMMANDS(row) \
-    row(list) row(eval) row(sample) row(plot) row(figures) row(render) row(convert) row(fabricate) \
+    row(list) row(eval) row(sample) row(plot) row(figures) row(render) row(convert) row(convert_ndf) row(fabricate) \
     row(fit) row(check)
 
 #define DECLARE(name) extern const cmd_record cmd_##name;

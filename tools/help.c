@@ -63,8 +63,8 @@ void frame_help(FILE *to)
           "       asperity help SUBCOMMAND | --version | --help\n\n"
           "Microfacet surface appearance: evaluate, sample, plot, render, fit.\n\n", to);
     for (const cmd_record *const *c = cmd_commands; *c; c++) {
-        fprintf(to, "  %-10s ", (*c)->name);
-        put_wrapped(to, (*c)->summary, 13);
+        fprintf(to, "  %-12s ", (*c)->name);
+        put_wrapped(to, (*c)->summary, 15);
     }
     fputs("\nA SPEC names a distribution or a material, `asperity list` shows what there is:\n"
           "  ggx:alpha=0.3      student_t:alpha_x=0.3,alpha_y=0.1,rotation=0.5,gamma=3\n"

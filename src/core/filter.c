@@ -7,6 +7,7 @@
 #define ASP_PRECISION 64
 #include "asperity_ndf.h"
 #include "asperity/elementary.h"
+#include "core/round.h"
 
 /* Symmetric, 2 x 2. */
 typedef struct scatter { double xx, xy, yy; } scatter;
@@ -70,7 +71,11 @@ static asp_status model_surface(const asp_model *model, const double *shape, asp
 {
     asp_map map;
     asp_status s = asp_map_from_roughness(1.0, 1.0, 0.0, 0.0, 0.0, &map, err);
-    return s ? s : asp_ndf_make(model, &map, shape, out, err);
+    if (!s)
+        s = asp_ndf_make(model, &map, shape, out, err);
+    if (!s && !aspi_is_round(out))
+        s = asp_fail(err, ASP_EINVAL, model->name, "its standard surface is not radially symmetric");
+    return s;
 }
 
 /* ---- the variance of a standard surface
@@ -87,6 +92,8 @@ static int variance_of(const asp_ndf *surface, double *out)
 {
     double sum = 0.0, last = 0.0, before = 0.0;
     int i;
+    if (!aspi_is_round(surface))
+        return 0;
     for (i = 0; i < VARIANCE_NODES; i++) {
         double r = aspi_exp(VARIANCE_FIRST + VARIANCE_STEP * i), r2 = r * r;
         double term = r2 * asp_P22(surface, r, 0.0) * r2;
@@ -105,10 +112,11 @@ static int variance_of(const asp_ndf *surface, double *out)
     return *out > 0.0 && *out < 1e30;
 }
 
-static asp_status fail_variance(const asp_model *model, asp_error *err)
+static asp_status fail_variance(const asp_model *model, const asp_ndf *surface, asp_error *err)
 {
-    return asp_fail(err, ASP_EINVAL, model->name,
-                    "the covariance of its slopes is infinite (the tail falls too slowly)");
+    return asp_fail(err, ASP_EINVAL, model->name, aspi_is_round(surface)
+                    ? "the covariance of its slopes is infinite (the tail falls too slowly)"
+                    : "its standard surface is not radially symmetric");
 }
 
 asp_status asp_ndf_moments(const asp_ndf *ndf, asp_moments *out, asp_error *err)
@@ -117,7 +125,7 @@ asp_status asp_ndf_moments(const asp_ndf *ndf, asp_moments *out, asp_error *err)
     scatter s = scatter_of(&ndf->map);
     double v, tx = ndf->map.tx, ty = ndf->map.ty;
     if (!variance_of(&surface, &v))
-        return fail_variance(ndf->model, err);
+        return fail_variance(ndf->model, &surface, err);
     out->mean_x = tx;
     out->mean_y = ty;
     out->xx = v * s.xx + tx * tx;
@@ -175,7 +183,7 @@ asp_status asp_map_from_moments(const asp_model *model, const double *shape, con
     if (s)
         return s;
     if (!variance_of(&surface, &v))
-        return fail_variance(model, err);
+        return fail_variance(model, &surface, err);
     cov.xx = in->xx - in->mean_x * in->mean_x;
     cov.xy = in->xy - in->mean_x * in->mean_y;
     cov.yy = in->yy - in->mean_y * in->mean_y;
@@ -272,7 +280,10 @@ static asp_status choose_match(asp_match match, const asp_model *infinite, int *
     if (match != ASP_MATCH_AUTO && match != ASP_MATCH_COVARIANCE && match != ASP_MATCH_AREA)
         return asp_fail(err, ASP_EINVAL, "match", "neither automatic, nor covariance, nor area");
     *covariance = match != ASP_MATCH_AREA && !infinite;
-    return match == ASP_MATCH_COVARIANCE && infinite ? fail_variance(infinite, err) : ASP_OK;
+    if (match != ASP_MATCH_COVARIANCE || !infinite)
+        return ASP_OK;
+    return asp_fail(err, ASP_EINVAL, infinite->name,
+                    "the covariance of its slopes is infinite, or its standard surface is not round");
 }
 
 static asp_status make_matched(const asp_model *model, const double *shape, scatter s, double tx,
@@ -292,6 +303,9 @@ asp_status asp_ndf_sum(const asp_ndf *a, const asp_ndf *b, const asp_model *mode
     axes common = common_axes(a, b);
     scatter s;
     asp_status status = model_surface(model, shape, &surface, err);
+    if (!status && !(aspi_is_round(&first) && aspi_is_round(&second)))
+        status = asp_fail(err, ASP_EINVAL, (aspi_is_round(&first) ? b : a)->model->name,
+                          "its standard surface is not radially symmetric");
     if (status)
         return status;
     ok_a = variance_of(&first, &va);
