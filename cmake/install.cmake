@@ -20,7 +20,7 @@ endif()
 set_target_properties(asperity PROPERTIES EXPORT_NAME asperity)
 install(TARGETS asperity EXPORT asperity-core)
 install(EXPORT asperity-core NAMESPACE asperity:: DESTINATION ${ASPERITY_PACKAGE_DIR})
-install(FILES include/asperity.h include/asperity_ndf.h include/asperity_study.h
+install(FILES include/asperity.h include/asperity_ndf.h include/asperity_study.h include/asperity_convert.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY include/asperity DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.h")

@@ -1,6 +1,5 @@
 /* test_convert.c - conventions of roughness, and moments of slopes there and back */
-#include "asperity.h"
-#include "asperity_ndf.h"
+#include "asperity_convert.h"
 #include "core/rng.h"
 
 #include <math.h>

@@ -3,8 +3,7 @@
  * The truth is a mixture: of the parts themselves for an average, of one surface moved by 20,480 slopes of
  * the other for a sum, in rings with the weights of their density. Its density and projected area are
  * means over those; how far the one distribution that replaces it is off is printed, and bounded. */
-#include "asperity.h"
-#include "asperity_ndf.h"
+#include "asperity_convert.h"
 
 #include <math.h>
 #include <stdio.h>

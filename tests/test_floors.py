@@ -26,7 +26,7 @@ FLOORS = [
 # Public headers belong to the floor that they are the face of.
 HEADERS = {
     'include/asperity.h': 0, 'include/asperity_ndf.h': 0,
-    'include/asperity_study.h': 0,
+    'include/asperity_study.h': 0, 'include/asperity_convert.h': 0,
     'include/asperity_data.h': 4, 'include/asperity_draw.h': 6,
 }
 CORE = 3                      # the floors up to here make the core library

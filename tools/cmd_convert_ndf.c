@@ -1,7 +1,7 @@
 /* cmd_convert_ndf.c - one distribution in other words: matrices, moments, roughness as other systems count
  * it, the nearest distribution of another model */
 #include "cmd.h"
-#include "asperity_ndf.h"
+#include "asperity_convert.h"
 #include "bsdf/spec.h"
 #include "notebook.h"
 

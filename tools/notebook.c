@@ -113,12 +113,22 @@ static asp_status row(const fit *f, json_t *list, asp_error *err)
     return ASP_OK;
 }
 
+/* Are the distributions of a group in the library? */
+static int known(const struct group *g)
+{
+    char name[64];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(g->fits[0].target, ":"), g->fits[0].target);
+    return asp_find_model(NULL, name) && asp_find_model(NULL, g->fits[0].model);
+}
+
 int notebook_table(int json)
 {
     json_t *all = json ? json_array() : NULL;
     asp_error err;
     asp_status status = ASP_OK;
     for (size_t i = 0; !status && i < sizeof groups / sizeof *groups; i++) {
+        if (!known(&groups[i]))
+            continue;
         json_t *list = json ? json_array() : NULL;
         if (!json)
             printf("%s%s\n  %-28s %9s %6s %7s   %11s %6s   %11s %6s\n", i ? "\n" : "", groups[i].claim, "target",

@@ -4,7 +4,7 @@
  * only keep it from dividing by zero (alpha at least 1e-6, say) are left out where a slope map
  * refuses such values anyway; those that change what a user sees are in. */
 #define ASP_PRECISION 64
-#include "asperity_ndf.h"
+#include "asperity_convert.h"
 #include "asperity/elementary.h"
 #include "bsdf/spec.h"
 

@@ -5,7 +5,7 @@
  * its place: along u it is E|u.(p - t)| = |M^T u| E|q_x|, twice the projected area seen from the
  * horizon, which is finite as soon as masking is (Heitz 2014, sec. 4). */
 #define ASP_PRECISION 64
-#include "asperity_ndf.h"
+#include "asperity_convert.h"
 #include "asperity/elementary.h"
 #include "core/round.h"
 
