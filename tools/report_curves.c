@@ -156,8 +156,9 @@ static void log_limits(const curves *c, asp_axis *axis)
 /* How far from the mirror direction the lobe is still worth seeing on a linear scale. */
 static double lobe_width(const report *r)
 {
-    double alpha = r->result[r->best].parameter[0].value;
-    return fmin(fmax(12 * atan(alpha), 2 / DEGREES), 80 / DEGREES);
+    /* the median slope is alpha for GGX, and something like it for all */
+    asp_vec3 m = asp_sample_normal(&r->result[r->best].material.ndf, 0.5, 0);
+    return fmin(fmax(12 * atan2(hypot(m.x, m.y), m.z), 2 / DEGREES), 80 / DEGREES);
 }
 
 /* Circles have a white edge, with which many of them wipe each other out. */

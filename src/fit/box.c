@@ -3,7 +3,8 @@
  * Optimisers see b; each axis has the scale on which lobes change evenly: logarithmic for roughness,
  * 1/eta for the index, s/(s + v - low) for a shape number whose range ends at infinity, so that
  * infinity is the ordinary place b = 0 (for gamma of student_t this is a multiple of 1/gamma + ...,
- * in which the density is analytic through the Beckmann limit). */
+ * in which the density is analytic through the Beckmann limit). A range that ends far beyond its
+ * default is treated alike, up to its end. */
 #include "fit.h"
 
 #define ALPHA_LOW 1e-3
@@ -11,28 +12,33 @@
 #define ETA_LOW 1.05
 #define ETA_HIGH 100.0
 #define OPEN 1e-4           /* how near the search comes to an end that is itself refused */
+#define FAR 20              /* times the default above the low end: a long range */
 
 static aspi_axis shape_axis(const asp_param *param)
 {
     aspi_axis axis = { param->name, ASPI_SCALE_LINEAR, param->low, param->high, 0, 0, 1 };
-    if (isinf(param->high)) {
+    double turn = param->initial > param->low ? param->initial - param->low : 1;
+    if (param->low > 0 && isfinite(param->high) && param->high > 10 * param->low)
+        axis.scale = ASPI_SCALE_LOG;
+    else if (param->high - param->low > FAR * turn) {
         axis.scale = ASPI_SCALE_INVERSE;
-        axis.turn = param->initial > param->low ? param->initial - param->low : 1;
+        axis.turn = turn;
+        axis.b_low = isinf(param->high) ? 0 : turn / (turn + param->high - param->low);
         if (param->low_open)
             axis.b_high = 1 - OPEN;
-    } else {
-        if (param->low > 0 && param->high > 10 * param->low)
-            axis.scale = ASPI_SCALE_LOG;
-        if (param->low_open)
-            axis.b_low = OPEN;
+        return axis;
     }
+    if (param->low_open)
+        axis.b_low = OPEN;
     return axis;
 }
 
 aspi_box aspi_box_make(const asp_model *model)
 {
     aspi_box box = { 0 };
-    box.axis[box.n++] = (aspi_axis){ "alpha", ASPI_SCALE_LOG, ALPHA_LOW, ALPHA_HIGH, 0, 0, 1 };
+    if (!model->own_scale)
+        box.axis[box.n++] = (aspi_axis){ "alpha", ASPI_SCALE_LOG, ALPHA_LOW, ALPHA_HIGH, 0, 0, 1 };
+    box.shape = box.n;
     for (size_t i = 0; i < model->param_count; i++)
         box.axis[box.n++] = shape_axis(&model->params[i]);
     box.axis[box.n++] = (aspi_axis){ "eta", ASPI_SCALE_INVERSE, ETA_LOW, ETA_HIGH, 1, 0, 1 };

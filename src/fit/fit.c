@@ -106,7 +106,8 @@ static asp_status finish(job *j, size_t k, aspi_problem *p, aspi_point *candidat
     /* optima of simpler models last in time: their loss is kept as it is, to the bit */
     for (size_t i = 0; i < j->done; i++) {
         size_t other = j->order[i];
-        if (j->model[other]->param_count < j->model[k]->param_count)
+        if (j->box[other].shape && p->box.shape
+            && j->model[other]->param_count < j->model[k]->param_count)
             candidate[n++] = aspi_translate(&search, &j->box[other], &j->optimum[other]);
     }
     best_first(candidate, n);
@@ -169,7 +170,7 @@ static void write_spec(const aspi_problem *p, const aspi_point *at, char *out, s
     static const char *const group[] = { "correlated", "uncorrelated", "v_cavity" };
     text t = { out, size, 0 };
     const aspi_axis *axis = p->box.axis;
-    int eta = p->box.n - 1, own_alpha = 0;
+    int eta = p->box.n - 1, first = p->box.shape, own_alpha = 0;
     put_colour(&t, "lambert_specular:diffuse=", at->colour, p->set->channels);
     put_colour(&t, ",specular=", at->colour + 3, p->set->channels);
     put_number(&t, ",eta=", aspi_axis_value(&axis[eta], at->b[eta]));
@@ -180,14 +181,16 @@ static void write_spec(const aspi_problem *p, const aspi_point *at, char *out, s
     }
     put(&t, ",ndf=(");
     put(&t, p->model->name);
-    for (int i = 1; i < eta; i++)
+    for (int i = first; i < eta; i++)
         own_alpha |= !strcmp(axis[i].name, "alpha");
-    double alpha = aspi_axis_value(&axis[0], at->b[0]);
-    put_number(&t, own_alpha ? ":alpha_x=" : ":alpha=", alpha);
-    if (own_alpha)
-        put_number(&t, ",alpha_y=", alpha);
-    for (int i = 1; i < eta; i++) {
-        put(&t, ",");
+    if (first) {
+        double alpha = aspi_axis_value(&axis[0], at->b[0]);
+        put_number(&t, own_alpha ? ":alpha_x=" : ":alpha=", alpha);
+        if (own_alpha)
+            put_number(&t, ",alpha_y=", alpha);
+    }
+    for (int i = first; i < eta; i++) {
+        put(&t, i ? "," : ":");
         put(&t, axis[i].name);
         put_number(&t, "=", aspi_axis_value(&axis[i], at->b[i]));
     }
@@ -261,6 +264,12 @@ static asp_status fit_model(job *j, size_t k, asp_fit_result *out, asp_error *er
 
 /* ------------------------------------------------------------------ the public call */
 
+/* How many numbers of a distribution a search moves. */
+static size_t numbers_of(const asp_model *model)
+{
+    return model->param_count + (model->own_scale ? 0 : 1);
+}
+
 static asp_status check(job *j, const asp_fit_options *options, asp_error *err)
 {
     memset(j, 0, sizeof *j);
@@ -296,7 +305,7 @@ static asp_status check(job *j, const asp_fit_options *options, asp_error *err)
         return asp_fail_range(err, "models", (double)j->count, 1, 0, MODELS);
     for (size_t i = 0; i < j->count; i++) {
         size_t k = i;
-        for (; k && j->model[j->order[k - 1]]->param_count > j->model[i]->param_count; k--)
+        for (; k && numbers_of(j->model[j->order[k - 1]]) > numbers_of(j->model[i]); k--)
             j->order[k] = j->order[k - 1];
         j->order[k] = i;
     }

@@ -62,7 +62,9 @@ const aspi_loss *aspi_find_loss(const char *name);
 void aspi_fit_set_weights(aspi_fit_set *set, const aspi_loss *loss);
 double aspi_loss_count(size_t n, const double *data, const double *weight);
 
-/* ---- the box: alpha, the shape numbers, eta, each as b in [0, 1] along a smooth scale */
+/* ---- the box: alpha, the shape numbers, eta, each as b in [0, 1] along a smooth scale. Where the
+ * shape numbers carry the roughness (own_scale) there is no alpha, and the map's stays 1; the first
+ * of them then takes its place: the longest axis, and the one along which starts are dense. */
 
 #define ASPI_AXES (ASP_SHAPE_NUMBERS + 2)
 
@@ -76,7 +78,11 @@ typedef struct aspi_axis {
     double b_low, b_high;                        /* the ends that can be evaluated */
 } aspi_axis;
 
-typedef struct aspi_box { int n; aspi_axis axis[ASPI_AXES]; } aspi_box;
+typedef struct aspi_box {
+    int n;
+    int shape;                                   /* where the shape numbers begin: 1, or 0 without alpha */
+    aspi_axis axis[ASPI_AXES];
+} aspi_box;
 
 aspi_box aspi_box_make(const asp_model *model);
 double aspi_axis_value(const aspi_axis *axis, double b);
@@ -150,7 +156,7 @@ asp_status aspi_try_ends(aspi_search *search, aspi_point *at, int rounds, asp_er
 asp_status aspi_starts(aspi_search *search, uint64_t seed, size_t limit, aspi_point *out,
                        size_t *found, asp_error *err);
 /* The optimum of another model as seen by this one: the same alpha, eta and colours, at the shape
- * (all whole numbers, ends and defaults are tried) that fits best. */
+ * (all whole numbers, ends and defaults are tried) that fits best. Both have an alpha. */
 aspi_point aspi_translate(aspi_search *search, const aspi_box *from, const aspi_point *optimum);
 
 /* Fills parameter[], parameter_count and correlation[] of a result. ASP_ENOMEM. */

@@ -44,10 +44,10 @@ asp_status aspi_problem_ndf(const aspi_problem *p, const double *b, asp_ndf *out
 {
     double shape[ASP_SHAPE_NUMBERS] = { 0 };
     asp_map map;
-    double alpha = aspi_axis_value(&p->box.axis[0], b[0]);
+    double alpha = p->box.shape ? aspi_axis_value(&p->box.axis[0], b[0]) : 1;
     asp_status status = asp_map_from_roughness(alpha, alpha, 0, 0, 0, &map, NULL);
-    for (int i = 1; i < p->box.n - 1; i++)
-        shape[i - 1] = aspi_axis_value(&p->box.axis[i], b[i]);
+    for (int i = p->box.shape; i < p->box.n - 1; i++)
+        shape[i - p->box.shape] = aspi_axis_value(&p->box.axis[i], b[i]);
     return status ? status : asp_ndf_make(p->model, &map, shape, out, NULL);
 }
 

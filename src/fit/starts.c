@@ -1,13 +1,15 @@
 /* starts.c - where searches begin
  *
- * A grid of roughness, shape and index, jittered by the seed, of which the best few that differ are
- * polished. Shape numbers are visited at whole numbers, defaults and ends, because that is where one
+ * A grid of roughness (alpha, or the first shape number where that carries the roughness), shape and
+ * index, jittered by the seed, of which the best few that differ are polished. Shape numbers are visited at whole numbers, defaults and ends, because that is where one
  * distribution becomes another (gamma = 2: GGX, gamma = infinity: Beckmann). */
 #include "fit.h"
 
 #include <string.h>
 
-#define ALPHAS 9
+#define ALPHAS 9                      /* over 3.6 decades; a longer axis has more, up to: */
+#define MOST_ALPHAS 24
+#define PER_DECADE 2.5
 #define ETAS 3
 #define PLACES 8
 #define SHAPES 24                     /* combinations of shape numbers at most */
@@ -44,20 +46,22 @@ static int places(const aspi_axis *axis, const asp_param *param, double out[PLAC
     return add_place(axis->b_low + 0.95 * (axis->b_high - axis->b_low), out, n);
 }
 
-/* All combinations of the places of the shape numbers, as many as there is room for. */
+/* All combinations of the places of the shape numbers, as many as there is room for; without that
+ * on axis 0. */
 static int combinations(const aspi_problem *p, double out[SHAPES][ASPI_AXES])
 {
     int n = 1;
     memset(out, 0, SHAPES * sizeof out[0]);
-    for (size_t k = 0; k < p->model->param_count; k++) {
+    for (size_t k = p->box.shape ? 0 : 1; k < p->model->param_count; k++) {
         double place[PLACES];
-        int count = places(&p->box.axis[k + 1], &p->model->params[k], place);
+        size_t axis = k + (size_t)p->box.shape;
+        int count = places(&p->box.axis[axis], &p->model->params[k], place);
         if (count * n > SHAPES)
             count = SHAPES / n;
         for (int j = count - 1; j >= 0; j--)       /* j = 0 last: it fills the rows being copied */
             for (int i = 0; i < n; i++) {
                 memmove(out[j * n + i], out[i], sizeof out[0]);
-                out[j * n + i][k + 1] = place[j];
+                out[j * n + i][axis] = place[j];
             }
         n *= count;
     }
@@ -96,6 +100,13 @@ static size_t insert(const aspi_problem *p, const aspi_point *point, size_t limi
     return found + 1;
 }
 
+static int roughnesses(const aspi_axis *axis)
+{
+    if (axis->scale != ASPI_SCALE_LOG)
+        return ALPHAS;
+    return (int)fmin(fmax(PER_DECADE * log10(axis->high / axis->low), ALPHAS), MOST_ALPHAS);
+}
+
 asp_status aspi_starts(aspi_search *search, uint64_t seed, size_t limit, aspi_point *out,
                        size_t *found, asp_error *err)
 {
@@ -103,13 +114,15 @@ asp_status aspi_starts(aspi_search *search, uint64_t seed, size_t limit, aspi_po
     aspi_problem *p = search->problem;
     double shape[SHAPES][ASPI_AXES];
     int shapes = combinations(p, shape), eta = p->box.n - 1;
+    int alphas = roughnesses(&p->box.axis[0]);
+    double low = p->box.axis[0].b_low, range = p->box.axis[0].b_high - low;
     uint64_t counter = 0;
     *found = 0;
     for (int s = 0; s < shapes; s++)
-        for (int a = 0; a < ALPHAS; a++) {
+        for (int a = 0; a < alphas; a++) {
             aspi_point point = { 0 };
             memcpy(point.b, shape[s], sizeof point.b);
-            point.b[0] = (a + 0.5 + 0.4 * jitter(seed, counter++)) / ALPHAS;
+            point.b[0] = low + range * ((a + 0.5 + 0.4 * jitter(seed, counter++)) / alphas);
             if (search->cancelled && search->cancelled(search->context)) {
                 search->stopped = 1;
                 return asp_fail(err, ASP_ECANCELLED, "", "stopped by the progress function");
