@@ -1,11 +1,15 @@
 /* cmd_check.c - the laws that every distribution must obey, as a table */
+#define _XOPEN_SOURCE 700
 #include "cmd.h"
 #include "asperity_ndf.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define LAWS 32
+#define THREADS 64
 
 /* What became of one law over the distributions of a group. */
 typedef struct tally {
@@ -15,77 +19,166 @@ typedef struct tally {
 } tally;
 
 typedef struct group {
-    const char *title, *spec;    /* spec: the one being checked */
+    const char *title;
     tally  laws[LAWS];
     size_t law_count, spec_count;
 } group;
+
+/* One distribution: what to check, and once it is done what was found. */
+typedef struct item {
+    char   spec[320];
+    const char *title;           /* of its group */
+    asp_law_result found[LAWS];
+    size_t count;
+    int    done, refused;        /* refused: the spec; `error` says why */
+    double part;                 /* of the work, for the progress bar */
+    asp_status status;
+    asp_error  error;
+} item;
+
+/* Shared by the threads, which take items in turn. */
+typedef struct board {
+    asp_laws_options how;
+    item  *item;
+    size_t count, next, shown;   /* shown: items whose group is printed */
+    double part;                 /* the sum of the items' */
+    int    stop;
+    cmd_progress bar;
+    pthread_mutex_t lock;
+} board;
+
+typedef struct turn { board *board; item *item; } turn;
 
 static double share(const asp_law_result *r)
 {
     return r->allowed > 0 ? r->worst / r->allowed : r->worst > 0 ? 1e300 : 0;
 }
 
-static void note(void *context, const asp_law_result *result)
+static void add(group *g, const item *from)
 {
-    group *g = context;
-    size_t i = 0;
-    while (i < g->law_count && asp_laws(i) != result->law)
-        i++;
-    if (i == g->law_count || !result->checks)
-        return;
-    tally *t = &g->laws[i];
-    int worse = !t->seen || (t->worst.passed && !result->passed)
-             || (t->worst.passed == result->passed && share(result) > share(&t->worst));
-    t->seen++;
-    t->failed += !result->passed;
-    t->checks += result->checks;
-    if (worse) {
-        t->worst = *result;
-        snprintf(t->spec, sizeof t->spec, "%s", g->spec);
+    g->spec_count++;
+    for (size_t k = 0; k < from->count; k++) {
+        const asp_law_result *result = &from->found[k];
+        size_t i = 0;
+        while (i < g->law_count && asp_laws(i) != result->law)
+            i++;
+        if (i == g->law_count || !result->checks)
+            continue;
+        tally *t = &g->laws[i];
+        int worse = !t->seen || (t->worst.passed && !result->passed)
+                 || (t->worst.passed == result->passed && share(result) > share(&t->worst));
+        t->seen++;
+        t->failed += !result->passed;
+        t->checks += result->checks;
+        if (worse) {
+            t->worst = *result;
+            snprintf(t->spec, sizeof t->spec, "%s", from->spec);
+        }
     }
 }
 
 /* ------------------------------------------------------------------ what to check */
 
-typedef struct progress { cmd_progress bar; size_t done, all; } progress;
+static item *new_item(board *b, const char *title)
+{
+    if (b->count % 64 == 0) {
+        item *more = realloc(b->item, (b->count + 64) * sizeof *more);
+        if (!more)
+            return NULL;
+        b->item = more;
+    }
+    item *out = &b->item[b->count++];
+    memset(out, 0, sizeof *out);
+    out->title = title;
+    return out;
+}
+
+static int list_items(const cmd_args *args, const asp_model *only, board *b)
+{
+    size_t operands = cmd_operand_count(args);
+    for (size_t i = 0; i < operands; i++) {
+        item *one = new_item(b, cmd_operand(args, i));
+        if (!one)
+            return cmd_failed("out of memory");
+        snprintf(one->spec, sizeof one->spec, "%s", one->title);
+    }
+    for (const asp_model *const *m = asp_models(); !operands && *m; m++)
+        for (size_t i = 0; !only || only == *m; i++) {
+            item *one = new_item(b, (*m)->name);
+            if (!one)
+                return cmd_failed("out of memory");
+            if (!asp_laws_spec(*m, i, one->spec, sizeof one->spec)) {
+                b->count--;
+                break;
+            }
+        }
+    return CMD_OK;
+}
+
+/* ------------------------------------------------------------------ checking */
+
+static void note(void *context, const asp_law_result *result)
+{
+    item *one = context;
+    if (one->count < LAWS)
+        one->found[one->count++] = *result;
+}
 
 static int show(void *context, double done)
 {
-    progress *p = context;
-    return cmd_progress_show(&p->bar, ((double)p->done + done) / (double)p->all);
+    turn *t = context;
+    board *b = t->board;
+    pthread_mutex_lock(&b->lock);
+    b->part += done - t->item->part;
+    t->item->part = done;
+    cmd_progress_show(&b->bar, b->part / (double)b->count);
+    int stop = b->stop;
+    pthread_mutex_unlock(&b->lock);
+    return stop;
 }
 
-static int check_spec(const char *spec, asp_laws_options *how, progress *p, group *g)
+static void check_item(board *b, item *one)
 {
+    turn t = { b, one };
+    asp_laws_options how = b->how;
     asp_ndf ndf;
-    asp_error err;
-    if (cmd_read_ndf(spec, &ndf, &err) != ASP_OK)
-        return err.file[0] ? cmd_error(&err) : cmd_bad_ndf("", spec, &err);
-    g->spec = spec;
-    g->spec_count++;
-    how->progress = show;
-    how->context = p;
-    asp_status status = asp_laws_check(&ndf, how, note, g, NULL, &err);
-    p->done++;
-    return status == ASP_OK ? CMD_OK : cmd_error(&err);
+    how.progress = show;
+    how.context = &t;
+    pthread_mutex_lock(&b->lock);                /* files that specs name are kept in one list */
+    one->status = strlen(one->title) < sizeof one->spec ? cmd_read_ndf(one->spec, &ndf, &one->error)
+                : asp_fail(&one->error, ASP_EPARSE, "spec", "too long");
+    pthread_mutex_unlock(&b->lock);
+    one->refused = one->status != ASP_OK;
+    if (!one->refused)
+        one->status = asp_laws_check(&ndf, &how, note, one, NULL, &one->error);
 }
 
-static size_t spec_count(const asp_model *model)
+static item *take(board *b)
 {
-    char spec[320];
-    size_t count = 0;
-    while (asp_laws_spec(model, count, spec, sizeof spec))
-        count++;
-    return count;
+    pthread_mutex_lock(&b->lock);
+    item *one = b->next < b->count && !b->stop ? &b->item[b->next++] : NULL;
+    pthread_mutex_unlock(&b->lock);
+    return one;
 }
 
-static int check_model(const asp_model *model, asp_laws_options *how, progress *p, group *g)
+static void leave(board *b, item *one)
 {
-    char spec[320];
-    int status = CMD_OK;
-    for (size_t i = 0; status == CMD_OK && asp_laws_spec(model, i, spec, sizeof spec); i++)
-        status = check_spec(spec, how, p, g);
-    return status;
+    pthread_mutex_lock(&b->lock);
+    one->done = 1;
+    b->part += 1 - one->part;
+    one->part = 1;
+    b->stop |= one->status != ASP_OK;
+    pthread_mutex_unlock(&b->lock);
+}
+
+static void *work(void *context)
+{
+    board *b = context;
+    for (item *one = take(b); one; one = take(b)) {
+        check_item(b, one);
+        leave(b, one);
+    }
+    return NULL;
 }
 
 /* ------------------------------------------------------------------ the findings */
@@ -158,58 +251,95 @@ static int read_options(const cmd_args *args, asp_laws_options *how, const asp_m
     return CMD_OK;
 }
 
-static int finish_group(const group *g, json_t *list, size_t *failed)
+/* Prints the groups that are complete, in their order; at the end all are. */
+static int print_done(board *b, group *g, json_t *list, size_t *failed)
 {
-    *failed += failures(g);
-    if (list)
-        json_array_append_new(list, group_json(g));
-    else
-        print_group(g);
-    fflush(stdout);
+    while (b->shown < b->count) {
+        size_t first = b->shown, end = first;
+        int done = 1;
+        pthread_mutex_lock(&b->lock);
+        while (end < b->count && b->item[end].title == b->item[first].title)
+            done &= b->item[end++].done;
+        pthread_mutex_unlock(&b->lock);
+        if (!done)
+            return CMD_OK;
+        memset(g, 0, sizeof *g);
+        while (g->law_count < LAWS && asp_laws(g->law_count))
+            g->law_count++;
+        g->title = b->item[first].title;
+        for (size_t i = first; i < end; i++)
+            add(g, &b->item[i]);
+        *failed += failures(g);
+        if (list)
+            json_array_append_new(list, group_json(g));
+        else {
+            pthread_mutex_lock(&b->lock);
+            cmd_progress_end(&b->bar);
+            print_group(g);
+            pthread_mutex_unlock(&b->lock);
+        }
+        fflush(stdout);
+        b->shown = end;
+    }
     return CMD_OK;
 }
 
-static int check_all(const cmd_args *args, asp_laws_options *how, const asp_model *only,
-                     json_t *list, size_t *failed)
+/* The first item that could not be checked. */
+static int say_error(const board *b)
 {
-    size_t operands = cmd_operand_count(args), law_count = 0;
-    progress p = { cmd_progress_begin("check"), 0, 0 };
+    for (size_t i = 0; i < b->count; i++)
+        if (b->item[i].status != ASP_OK && b->item[i].status != ASP_ECANCELLED)
+            return b->item[i].refused && !b->item[i].error.file[0] ? cmd_bad_ndf("", b->item[i].spec, &b->item[i].error)
+                                      : cmd_error(&b->item[i].error);
+    return CMD_OK;
+}
+
+static int check_all(board *b, int threads, json_t *list, size_t *failed)
+{
+    pthread_t other[THREADS];
+    int others = 0, status = CMD_OK;
     group *g = malloc(sizeof *g);
-    int status = g ? CMD_OK : cmd_failed("out of memory");
-    while (law_count < LAWS && asp_laws(law_count))
-        law_count++;
-    p.all = operands;
-    for (const asp_model *const *m = asp_models(); !operands && *m; m++)
-        p.all += !only || only == *m ? spec_count(*m) : 0;
-    for (size_t i = 0; status == CMD_OK; i++) {
-        const asp_model *model = operands ? NULL : asp_models()[i];
-        if (operands ? i == operands : !model)
-            break;
-        if (model && only && model != only)
-            continue;
-        memset(g, 0, sizeof *g);
-        g->law_count = law_count;
-        g->title = operands ? cmd_operand(args, i) : model->name;
-        status = operands ? check_spec(g->title, how, &p, g) : check_model(model, how, &p, g);
-        cmd_progress_end(&p.bar);
-        if (status == CMD_OK)
-            status = finish_group(g, list, failed);
-        p.bar.shown = cmd_progress_begin("").shown;
+    if (!g)
+        return cmd_failed("out of memory");
+    /* fewer threads than wished for is slower, not wrong */
+    while (others < threads - 1 && pthread_create(&other[others], NULL, work, b) == 0)
+        others++;
+    for (item *one = take(b); one; one = take(b)) {
+        check_item(b, one);
+        leave(b, one);
+        if (!b->stop)
+            status = print_done(b, g, list, failed);
     }
-    cmd_progress_end(&p.bar);
+    for (int i = 0; i < others; i++)
+        pthread_join(other[i], NULL);
+    cmd_progress_end(&b->bar);
+    if (status == CMD_OK)
+        status = say_error(b);
+    if (status == CMD_OK)
+        status = print_done(b, g, list, failed);
     free(g);
     return status;
 }
 
+static int thread_count(const cmd_args *args)
+{
+    int wished = (int)cmd_integer(args, "threads");
+    long n = wished ? wished : sysconf(_SC_NPROCESSORS_ONLN);
+    return n < 1 ? 1 : n > THREADS ? THREADS : (int)n;
+}
+
 static int run(const cmd_args *args)
 {
-    asp_laws_options how;
+    board b = { .bar = cmd_progress_begin("check"), .lock = PTHREAD_MUTEX_INITIALIZER };
     const asp_model *only = NULL;
     size_t failed = 0;
     json_t *list = cmd_given(args, "json") ? json_array() : NULL;
-    int status = read_options(args, &how, &only);
+    int status = read_options(args, &b.how, &only);
     if (status == CMD_OK)
-        status = check_all(args, &how, only, list, &failed);
+        status = list_items(args, only, &b);
+    if (status == CMD_OK)
+        status = check_all(&b, thread_count(args), list, &failed);
+    free(b.item);
     if (status == CMD_OK && list)
         status = cmd_print_json(json_pack("{s:b, s:O}", "holds", failed == 0, "results", list));
     else if (status == CMD_OK)
@@ -225,6 +355,8 @@ static const cmd_option options[] = {
       .help = "per test of a sampler; the other laws scale with its root" },
     { "seed", 's', "N", CMD_INTEGER, 0, 9007199254740991.0, .initial = "1",
       .help = "the same seed, the same findings" },
+    { "threads", 0, "N", CMD_INTEGER, 0, THREADS, .initial = "0",
+      .help = "0: as many as processors; the findings do not depend on it" },
     { "json", 0, NULL, CMD_FLAG, .help = "write JSON" },
     CMD_END
 };
