@@ -84,7 +84,8 @@ void aspi_law_furnace(aspi_trial *t)
             if (kind == 2 && (t->skewed || t->views[i].w.z < 1e-4))
                 continue;
             albedo = aspi_albedo(&mat, t->views[i].w, 1e-6, &doubt);
-            aspi_find(t, fmax(0, albedo - 1), 1e-7 + fmin(doubt, 1e-4), "%s, %s: albedo %.9g", name,
+            aspi_find(t, fmax(0, albedo - 1), 1e-7 + fmin(doubt, 1e-4)
+                      + 2 * t->ndf->model->area_error, "%s, %s: albedo %.9g", name,
                       t->views[i].name, albedo);
             aspi_find(t, !(albedo >= 0), 0, "%s, %s: albedo %.9g", name, t->views[i].name, albedo);
             if (aspi_tick(t, (double)(i * MIRRORS + (size_t)kind)

@@ -24,6 +24,16 @@ static const char *const slope_maps[] = {
     "alpha_x=3,alpha_y=0.4,rotation=2.2,mean_x=-0.7,mean_y=0.2"
 };
 
+/* Stretches and skews of a surface whose shape numbers carry the roughness. */
+static const char *const own_maps[] = {
+    "alpha_x=1,alpha_y=1",
+    "alpha_x=1.4,alpha_y=0.5,rotation=0.6,mean_x=0.4,mean_y=-0.25",
+    "alpha_x=0.3,alpha_y=0.3",
+    "alpha_x=0.8,alpha_y=1.2,rho=-0.6,mean_x=1.2,mean_y=1.6",
+    "alpha_x=1,alpha_y=2.5,rotation=-1.1",
+    "alpha_x=1,alpha_y=1,mean_x=0.3"
+};
+
 static const char *const ellipsoid_maps[] = {
     "alpha=0.3",
     "alpha_x=0.2,alpha_y=0.1,theta_x=0.3,theta_y=-0.2,theta_z=0.7",
@@ -75,14 +85,20 @@ static int append_value(char *spec, size_t size, const char *name, double value)
 
 int asp_laws_spec(const asp_model *model, size_t index, char *spec, size_t size)
 {
-    int ellipsoid = model->keys == ASP_KEYS_ELLIPSOID;
-    const char *const *maps = ellipsoid ? ellipsoid_maps : slope_maps;
-    size_t count = ellipsoid ? COUNT(ellipsoid_maps) : COUNT(slope_maps), k, turn = 1;
+    const char *const *maps = slope_maps;
+    size_t count = COUNT(slope_maps), k, turn = 1, corner;
     if (size == 0)
         return 0;
     spec[0] = '\0';
     if (!append(spec, size, model->name) || !append(spec, size, ":"))
         return 0;
+    if (model->keys == ASP_KEYS_ELLIPSOID) {
+        maps = ellipsoid_maps;
+        count = COUNT(ellipsoid_maps);
+    } else if (model->own_scale) {
+        maps = own_maps;
+        count = COUNT(own_maps);
+    }
     if (index < count)
         return append(spec, size, maps[index]);
     index -= count;
@@ -96,13 +112,14 @@ int asp_laws_spec(const asp_model *model, size_t index, char *spec, size_t size)
                     return append(spec, size, maps[turn * 5 % count])
                         && append_value(spec, size, model->params[k].name, values[i]);
     }
-    /* all parameters at one end, then at the other */
-    if (model->param_count > 1 && index < 4) {
-        int ok = append(spec, size, maps[index / 2 * 5 % count]);
+    /* every corner of the first two ranges, the others at the end of the first */
+    corner = index;
+    if (model->param_count > 1 && corner < 4) {
+        int ok = append(spec, size, maps[corner * 5 % count]);
         for (k = 0; ok && k < model->param_count; k++) {
             double values[VALUES];
-            int n = values_of(&model->params[k], values);
-            ok = append_value(spec, size, model->params[k].name, values[index % 2 ? n - 1 : 0]);
+            int n = values_of(&model->params[k], values), far = (int)(k == 1 ? corner / 2 : corner % 2);
+            ok = append_value(spec, size, model->params[k].name, values[far ? n - 1 : 0]);
         }
         return ok;
     }
