@@ -242,7 +242,8 @@ asp_measured *asp_fabricate(const asp_fabrication *what, asp_progress *progress,
  * uncertainty and a correlation near -1.
  *
  * Free are alpha of the slope map, every shape number of the model within its range, eta, diffuse
- * and specular. */
+ * and specular. Where the shape numbers carry the roughness themselves (asp_model.own_scale) the map
+ * stays that of alpha 1. */
 
 /* A way to measure the distance between model m and data d over the geometries j and channels. */
 typedef struct asp_loss {
@@ -313,8 +314,8 @@ typedef struct asp_fit_options {
     void    *context;
 } asp_fit_options;
 
-/* The default models: all of asp_models() but those that are another parametrisation of a model
- * before them (ASP_KEYS_ELLIPSOID). Writes at most `room` of them and returns how many there are. */
+/* The default models: all of asp_models() but those that are, isotropic, another parametrisation of a
+ * model before them: ellipsoid of ggx, hyper_cauchy and student_t_general of student_t. Writes at most `room` of them and returns how many there are. */
 size_t asp_fit_models(const asp_model **out, size_t room);
 
 /* The geometries that a fit sees, to be freed with free(); NULL on failure.

@@ -26,16 +26,32 @@ const char *asp_fit_reason_text(asp_fit_reason reason)
     return "unknown reason";
 }
 
+/* How many numbers of a distribution a search moves. */
+static size_t numbers_of(const asp_model *model)
+{
+    return model->param_count + (model->own_scale ? 0 : 1);
+}
+
+/* The same formulas with as many numbers: isotropic, that is the same family of lobes. */
+static int is_same_family(const asp_model *a, const asp_model *b)
+{
+    return a->f64.density == b->f64.density && numbers_of(a) == numbers_of(b);
+}
+
 size_t asp_fit_models(const asp_model **out, size_t room)
 {
     const asp_model *const *all = asp_models();
     size_t n = 0;
-    for (size_t i = 0; all[i]; i++)
-        if (all[i]->keys != ASP_KEYS_ELLIPSOID) {
-            if (n < room)
-                out[n] = all[i];
-            n++;
-        }
+    for (size_t i = 0; all[i]; i++) {
+        size_t before = 0;
+        while (before < i && !is_same_family(all[before], all[i]))
+            before++;
+        if (before < i)
+            continue;
+        if (n < room)
+            out[n] = all[i];
+        n++;
+    }
     return n;
 }
 
@@ -263,12 +279,6 @@ static asp_status fit_model(job *j, size_t k, asp_fit_result *out, asp_error *er
 }
 
 /* ------------------------------------------------------------------ the public call */
-
-/* How many numbers of a distribution a search moves. */
-static size_t numbers_of(const asp_model *model)
-{
-    return model->param_count + (model->own_scale ? 0 : 1);
-}
 
 static asp_status check(job *j, const asp_fit_options *options, asp_error *err)
 {

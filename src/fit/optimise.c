@@ -140,7 +140,7 @@ asp_status aspi_polish(aspi_search *search, aspi_point *at, const int *free_axes
         int info;
         aspi_point next = *at;
         aspi_problem_reweight(p, at, 1);
-        status = descend(search, &next, free_axes, 2 * rounds, &info, err);
+        status = descend(search, &next, free_axes, 4 * rounds, &info, err);
         if (status)
             return status;
         aspi_problem_colours(p, &next, 60);

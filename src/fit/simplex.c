@@ -10,7 +10,7 @@
 
 #define SIZE 0.02              /* of the first simplex, in b */
 #define FLAT 1e-6              /* relative spread of losses at which it stops */
-#define CALLS 90               /* evaluations per dimension at most */
+#define CALLS 200              /* evaluations per dimension at most */
 
 typedef struct simplex {
     aspi_search *search;

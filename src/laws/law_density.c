@@ -203,7 +203,8 @@ void aspi_law_matrix(aspi_trial *t)
     /* what is narrow beside the mean slope loses digits to it when the columns of A are split, and
      * twice as many when A^T A squares them first */
     double tilt = hypot(t->ndf->map.tx, t->ndf->map.ty);
-    double narrow = (1 + tilt + five.alpha_x) / five.alpha_y;
+    double own = t->ndf->model->own_scale ? fmin(t->scale, 1) : 1;
+    double narrow = (1 + tilt + five.alpha_x) / (five.alpha_y * own);
     double once = 1 + 0.02 * narrow, twice = once + 0.02 * narrow * narrow;
     if (t->planar) /* A^T A alone does not tell how a surface that is not round lies in it */
         return;

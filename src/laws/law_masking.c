@@ -260,7 +260,8 @@ void aspi_law_density_normal(aspi_trial *t)
  * The density ends where a facet turns edge-on, on the line x = mu: no node may meet that kink, and
  * no scale is known. So x is log-spaced towards the ends of (-inf, min(0, mu)] and [0, mu], and
  * y = width sinh b reaches any tail: the width is the roughness where a Gaussian still lives, and
- * |x| far out, where only powers do. */
+ * |x| far out, where only powers do. A surface with a scale of its own may have others: there the
+ * width is a hundredth, and b goes further. */
 
 #define STEP 0.2
 #define ACROSS 80
@@ -275,9 +276,9 @@ typedef struct visible_plane {
 static double visible_row(const visible_plane *v, double x, double dx)
 {
     const aspi_trial *t = v->t;
-    double width = fabs(x) < 30 * t->scale ? t->scale : fabs(x), row = 0;
-    int j;
-    for (j = -ACROSS; j <= ACROSS; j++) {
+    int fine = t->ndf->model->own_scale, across = fine ? ACROSS + 30 : ACROSS, j;
+    double width = (fabs(x) < 30 * t->scale ? t->scale : fabs(x)) * (fine ? 0.01 : 1), row = 0;
+    for (j = -across; j <= across; j++) {
         double b = STEP * j, y = width * sinh(b);
         asp_vec2 p = aspi_map_slope(&t->ndf->map, x * v->ux - y * v->uy, x * v->uy + y * v->ux);
         asp_vec3 m = aspi_unit(-p.x, -p.y, 1);
