@@ -198,8 +198,8 @@ static void compare_views(aspi_trial *t)
         aspi_standard_view(t->ndf, w, &h, &s);
         /* far below the mean plane sigma is a tail: 1e-4 below 1e-6 of its height at the plane */
         rounding = asp_sigma(t->ndf, w) < 1e-6 * s * t->scale ? 1e-4 : 2e-6;
-        /* a prepared surface takes it from its density, with that exponent's rounding */
-        if (h < 0 && t->ndf->model->area_error > 0)
+        /* on the way there it carries the rounding of its exponent, as densities do */
+        if (h < 0 && t->ndf->model->own_scale)
             rounding += 3e-7 * fmax(0, log(s * t->scale / asp_sigma(t->ndf, w)));
         aspi_find(t, sigma_deviation(t, w, found), rounding,
                   "sigma, w = (%.7g, %.7g, %.7g): %.9g, float64 %.9g", w.x, w.y, w.z, found,

@@ -337,6 +337,8 @@ void aspi_law_density_visible(aspi_trial *t)
         asp_vec3 w = t->views[i].w;
         double sigma = asp_sigma(t->ndf, w), sum, h, s;
         aspi_standard_view(t->ndf, w, &h, &s);
+        if (!(sigma > 1e-150)) /* nothing can be seen from there */
+            continue;
         for (k = 0; k < 200; k++) {
             asp_vec3 m = aspi_random_facet(t);
             double c = aspi_dot(w, m), pdf = asp_pdf_visible(t->ndf, w, m);
@@ -347,8 +349,6 @@ void aspi_law_density_visible(aspi_trial *t)
                           "%s, m = (%.6g, %.6g, %.6g): %.17g, formula %.17g", t->views[i].name,
                           m.x, m.y, m.z, pdf, expected);
         }
-        if (!(sigma > 1e-150)) /* nothing can be seen from there */
-            continue;
         sum = visible_integral(t, w);
         aspi_find(t, fabs(sum - 1), 1e-7 + (h < 0 ? FROM_BELOW : 1) * stated_error(t),
                   "%s: integral %.12g", t->views[i].name, sum);
