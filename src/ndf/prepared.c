@@ -367,7 +367,7 @@ static void prepared_tail_table(const prepared_source *s, double t0, double *out
                         -prepared_end_slope(half + i + m * row, -row), out + i, row);
 }
 
-_Static_assert(PREPARED_END <= ASP_TABLE_NUMBERS, "the tables fit");
+typedef char prepared_tables_fit[PREPARED_END <= ASP_TABLE_NUMBERS ? 1 : -1];
 
 asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
 {
