@@ -68,6 +68,8 @@
 #undef ASP_PRECISION
 #include "ndf/ggx.c"
 #undef ASP_PRECISION
+#include "ndf/gtr.c"
+#undef ASP_PRECISION
 #include "ndf/histogram.c"
 #undef ASP_PRECISION
 #include "ndf/histogram_make.c"
@@ -76,6 +78,8 @@
 #undef ASP_PRECISION
 #include "ndf/prepared.c"
 #undef ASP_PRECISION
+#include "ndf/sgd.c"
+#undef ASP_PRECISION
 #include "ndf/student_forms.c"
 #undef ASP_PRECISION
 #include "ndf/student_guess.c"
@@ -83,4 +87,6 @@
 #include "ndf/student_prepare.c"
 #undef ASP_PRECISION
 #include "ndf/student_t.c"
+#undef ASP_PRECISION
+#include "ndf/torrance_sparrow.c"
 #undef ASP_PRECISION
