@@ -132,6 +132,70 @@ static asp_status read_ellipsoid(aspi_spec *spec, const asp_model *model, asp_ma
     return s ? s : asp_map_from_matrix(A, map, err);
 }
 
+/* ---- samples */
+
+/* Made of samples, without which it is nothing: found by name, and not in the table of models. */
+extern const asp_model asp_model_tabulated;
+
+enum { MOST_SAMPLES = 64 };
+typedef struct sample_list { size_t count; double value[MOST_SAMPLES]; size_t at[MOST_SAMPLES]; } sample_list;
+
+/* Numbers between slashes; out->at is where each stands in the text. */
+static asp_status read_samples(aspi_spec *spec, const char *key, sample_list *out, asp_error *err)
+{
+    aspi_item *item = aspi_spec_find(spec, key);
+    const char *p, *end;
+    if (!item)
+        return aspi_spec_fail(spec, spec->text, ASP_EINVAL, key, strlen(key),
+                              "needed, as in tabulated:slopes=0/0.1/0.3,density=5/4/1", err);
+    p = item->value;
+    end = p + item->value_size;
+    for (out->count = 0; out->count < MOST_SAMPLES;) {
+        size_t used = aspi_read_number(p, (size_t)(end - p), &out->value[out->count]);
+        out->at[out->count++] = (size_t)(p - spec->text);
+        if (!used || (p + used < end && p[used] != '/'))
+            return aspi_spec_fail(spec, p, ASP_EPARSE, key, strlen(key),
+                                  "expected numbers between slashes, as in 0/0.1/0.3", err);
+        p += used;
+        if (p == end)
+            return ASP_OK;
+        p++;
+    }
+    return aspi_spec_fail(spec, p, ASP_EPARSE, key, strlen(key), "more than 64 numbers", err);
+}
+
+static asp_status parse_tabulated(aspi_spec *spec, const asp_model *model, asp_ndf *out, asp_error *err)
+{
+    sample_list slopes, densities;
+    asp_slope_samples samples = { 0, NULL, NULL, 0.0 };
+    asp_map map;
+    asp_status s = read_samples(spec, "slopes", &slopes, err);
+    if (!s)
+        s = read_samples(spec, "density", &densities, err);
+    if (!s)
+        s = aspi_spec_number(spec, "tail", &samples.tail, NULL, err);
+    if (!s)
+        s = read_slope_map(spec, model, &map, err);
+    if (!s)
+        s = aspi_spec_rest(spec, slope_keys, err);
+    if (s)
+        return s;
+    if (slopes.count != densities.count)
+        return aspi_spec_fail(spec, spec->text, ASP_EINVAL, "density", 7,
+                              "as many densities as slopes are needed", err);
+    samples.count = slopes.count;
+    samples.slope = slopes.value;
+    samples.density = densities.value;
+    s = asp_tabulated_make(&samples, &map, out, err);
+    if (s && err && err->position >= 0)      /* the index of a sample */
+        err->position = (long long)(strcmp(err->name, "density") ? slopes.at : densities.at)[err->position];
+    else if (s)
+        aspi_spec_blame(spec, err ? err->name : "", s, err);
+    return s;
+}
+
+/* ---- a distribution */
+
 asp_status aspi_ndf_parse(const asp_model *const *models, const char *text, size_t size,
                           asp_ndf *out, asp_error *err)
 {
@@ -151,6 +215,8 @@ asp_status aspi_ndf_parse(const asp_model *const *models, const char *text, size
     memcpy(name, spec.name, spec.name_size);
     name[spec.name_size] = '\0';
     model = asp_find_model(models, name);
+    if (!model && !strcmp(name, asp_model_tabulated.name))
+        return parse_tabulated(&spec, &asp_model_tabulated, out, err);
     if (!model)
         return aspi_spec_fail(&spec, text, ASP_EUNKNOWN, name, spec.name_size,
                               "no such distribution (asperity list)", err);

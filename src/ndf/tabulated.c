@@ -1,0 +1,220 @@
+/* tabulated.c - a density of slopes measured ring by ring
+ *
+ * log P22 between the samples is a cubic in x = log(r^2 + s^2), s the first slope above 0, monotone where
+ * the samples are; beyond the last one P22 falls as (r^2 + s^2)^-tail. GGX, Student's t
+ * and every power are straight lines there. Masking and samplers are prepared from it numerically. */
+#ifndef ASP_PRECISION
+#include "asperity_ndf.h"
+#include "ndf/prepared.h"
+
+#define TABULATED_KNOTS 30
+
+/* table[]: s^2, log of 1/mass, the last knot, the slope beyond it, then x, log P22 and d log P22/dx of the
+ * knots. */
+enum { TABULATED_S2, TABULATED_NORM, TABULATED_LAST, TABULATED_TAIL, TABULATED_X,
+       TABULATED_Y = TABULATED_X + TABULATED_KNOTS, TABULATED_M = TABULATED_Y + TABULATED_KNOTS,
+       TABULATED_END = TABULATED_M + TABULATED_KNOTS };
+
+typedef char tabulated_fits[TABULATED_END <= PREPARED_OWN ? 1 : -1];
+typedef char tabulated_prepared_fits[PREPARED_TAIL + (PREPARED_VIEW_CELLS + 3) * PREPARED_TAIL_ROW
+                                     <= ASP_TABLE_NUMBERS ? 1 : -1];
+
+#define ASP_PRECISION 64
+#include "asperity/elementary.h"
+
+static double tabulated_log_density(const asp_ndf *k, double r2)
+{
+    const double *x = k->table + TABULATED_X, *y = k->table + TABULATED_Y, *m = k->table + TABULATED_M;
+    double at = aspi_log_64(r2 + k->table[TABULATED_S2]), t, h, rise;
+    int last = (int)k->table[TABULATED_LAST], i = 0;
+    while (i < last && at >= x[i + 1])
+        i++;
+    if (i == last)
+        return k->table[TABULATED_NORM] + y[i] + (at - x[i]) * k->table[TABULATED_TAIL];
+    h = x[i + 1] - x[i];
+    t = (at - x[i]) / h;
+    rise = y[i + 1] - y[i];
+    return k->table[TABULATED_NORM] + y[i]
+         + t * (h * m[i] + t * ((3 * rise - h * (2 * m[i] + m[i + 1]))
+                                + t * (h * (m[i] + m[i + 1]) - 2 * rise)));
+}
+
+/* The knots' slopes: those of the cubic spline with continuous second derivative, as far as it is monotone
+ * (Fritsch, Carlson 1980: between 0 and three times the lesser secant), which keeps what is prepared exact. */
+static void tabulated_slopes(double *table, int last, double tail)
+{
+    const double *x = table + TABULATED_X, *y = table + TABULATED_Y;
+    double *m = table + TABULATED_M, d[TABULATED_KNOTS] = { 0 }, h[TABULATED_KNOTS] = { 0 };
+    double pivot[TABULATED_KNOTS];
+    int i;
+    for (i = 0; i < last; i++) {
+        h[i] = x[i + 1] - x[i];
+        d[i] = (y[i + 1] - y[i]) / h[i];
+    }
+    pivot[0] = 2 / h[0];
+    m[0] = 3 * d[0] / h[0];
+    for (i = 1; i < last; i++) {
+        double by = 1 / (h[i - 1] * pivot[i - 1]);
+        pivot[i] = 2 / h[i - 1] + 2 / h[i] - by / h[i - 1];
+        m[i] = 3 * (d[i - 1] / h[i - 1] + d[i] / h[i]) - by * m[i - 1];
+    }
+    m[last] = -tail;
+    for (i = last - 1; i >= 0; i--)
+        m[i] = (m[i] - m[i + 1] / h[i]) / pivot[i];
+    for (i = 0; i <= last; i++) {
+        double before = d[i > 0 ? i - 1 : 0], after = i < last ? d[i] : before;
+        double most = 3 * aspi_min_64(aspi_abs_64(before), aspi_abs_64(after));
+        double size = aspi_min_64(aspi_abs_64(m[i]), most);
+        if (before * after <= 0 || m[i] * before < 0)
+            size = 0;
+        m[i] = before < 0 ? -size : size;
+    }
+    table[TABULATED_TAIL] = -tail;
+}
+
+/* Integral of P22 over the slopes: pi e^(y + x) over x, by Gauss's rule of 8 nodes on short pieces; beyond
+ * the last knot a power. */
+static double tabulated_mass(const asp_ndf *k)
+{
+    static const double node[4] = { 0.18343464249564980, 0.52553240991632899, 0.79666647741362674,
+                                    0.96028985649753623 };
+    static const double weight[4] = { 0.36268378337836198, 0.31370664587788729, 0.22238103445337447,
+                                      0.10122853629037626 };
+    const double *x = k->table + TABULATED_X, s2 = k->table[TABULATED_S2];
+    int last = (int)k->table[TABULATED_LAST], i, j, n;
+    double sum = 0;
+    for (i = 0; i < last; i++)
+        for (j = 0; j < 8; j++) {
+            double half = (x[i + 1] - x[i]) / 16, middle = x[i] + half * (2 * j + 1);
+            for (n = 0; n < 8; n++) {
+                double at = middle + half * (n < 4 ? node[n] : -node[n - 4]);
+                sum += half * weight[n & 3]
+                     * aspi_exp_64(tabulated_log_density(k, aspi_exp_64(at) - s2) + at);
+            }
+        }
+    sum += aspi_exp_64(k->table[TABULATED_Y + last] + x[last]) / (-k->table[TABULATED_TAIL] - 1);
+    return ASP_PI * sum;
+}
+
+static asp_status tabulated_refuse(asp_error *err, const char *name, double value, double low, int open,
+                                   double high, size_t i)
+{
+    asp_fail_range(err, name, value, low, open, high);
+    if (err)
+        err->position = (long long)i;
+    return ASP_EINVAL;
+}
+
+static asp_status tabulated_check(const asp_slope_samples *s, asp_error *err)
+{
+    size_t i;
+    if (s->count < 2 || s->count > TABULATED_KNOTS - 1)
+        return asp_fail_range(err, "slopes", (double)s->count, 2, 0, TABULATED_KNOTS - 1);
+    for (i = 0; i < s->count; i++) {
+        double low = i ? s->slope[i - 1] : 0;
+        if (!(s->slope[i] <= 1e3 && (i ? s->slope[i] > low * (1 + 1e-6) + 1e-6 : s->slope[i] >= 0)))
+            return tabulated_refuse(err, "slopes", s->slope[i], low, i > 0, 1e3, i);
+        if (!(s->density[i] >= 1e-100 && s->density[i] <= 1e100))
+            return tabulated_refuse(err, "density", s->density[i], 1e-100, 0, 1e100, i);
+    }
+    if (s->tail != 0 && !(s->tail >= 2 && s->tail <= 1e3))
+        return asp_fail_range(err, "tail", s->tail, 2, 0, 1e3);
+    return ASP_OK;
+}
+
+static asp_status tabulated_prepare(asp_ndf *out, asp_error *err)
+{
+    const asp_slope_samples *s = (const asp_slope_samples *)out->data;
+    double *x = out->table + TABULATED_X, *y = out->table + TABULATED_Y, first, tail;
+    int last = 0;
+    size_t i;
+    asp_status status;
+    if (!s)
+        return asp_fail(err, ASP_EINVAL, "slopes", "the samples are missing: tabulated:slopes=0/0.1/0.3,"
+                        "density=5/4/1");
+    status = tabulated_check(s, err);
+    if (status)
+        return status;
+    first = s->slope[0] > 0 ? s->slope[0] : s->slope[1];
+    out->table[TABULATED_S2] = first * first;
+    if (s->slope[0] > 0) {                   /* flat below the first sample */
+        x[0] = aspi_log_64(first * first);
+        y[0] = aspi_log_64(s->density[0]);
+        last = 1;
+    }
+    for (i = 0; i < s->count; i++, last++) {
+        x[last] = aspi_log_64(s->slope[i] * s->slope[i] + first * first);
+        y[last] = aspi_log_64(s->density[i]);
+    }
+    last--;
+    out->table[TABULATED_LAST] = last;
+    tail = s->tail != 0 ? s->tail : aspi_max_64(2, (y[last - 1] - y[last]) / (x[last] - x[last - 1]));
+    tabulated_slopes(out->table, last, tail);
+    out->data = NULL;                        /* all that is needed stands in the value */
+    out->table[TABULATED_NORM] = -aspi_log_64(tabulated_mass(out));
+    return aspi_prepared_make(out, tabulated_log_density, err);
+}
+#undef ASP_PRECISION
+
+#define ASP_NDF tabulated
+#define ASP_PRECISION 64
+#include "tabulated.c"
+#undef ASP_PRECISION
+#define ASP_PRECISION 32
+#include "tabulated.c"
+#undef ASP_PRECISION
+
+ASP_RECORD asp_model asp_model_tabulated = {
+    "tabulated", NULL, "a density of slopes measured ring by ring", "samples of P22 over the slope",
+    ASP_KEYS_SLOPE, 1.0, 1, 5e-4, NULL, 0, tabulated_prepare, ASP_NDF_OPS(tabulated)
+};
+#undef ASP_NDF
+
+asp_status asp_tabulated_make(const asp_slope_samples *samples, const asp_map *map, asp_ndf *out,
+                              asp_error *err)
+{
+    static const asp_map whole = { 1.0, 0.0, 0.0, 1.0, 0.0, 0.0 };
+    return asp_ndf_make_data(&asp_model_tabulated, map ? map : &whole, NULL, samples, out, err);
+}
+
+#else
+#include "asperity/elementary.h"
+
+#define tabulated_next ASP_NDF_NAME(_next)
+
+/* One step of the search: to knot i + step, if x lies there or beyond. i + step is 31 at most: what is read
+ * there behind the knots does not count. */
+ASP_FN int tabulated_next(const asp_shape *k, int i, int step, asp_real x)
+{
+    int to = i + step;
+    int there = (x >= k->table[TABULATED_X + to]) & ((asp_real)to <= k->table[TABULATED_LAST]);
+    return i + step * there;
+}
+
+ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
+{
+    asp_real x = aspi_log((r2 + k->table[TABULATED_S2] * z2) / z2), h, d, t, y, m, n, rise, line, cubic;
+    int last = (int)k->table[TABULATED_LAST], i = 0, j;
+    i = tabulated_next(k, i, 16, x);
+    i = tabulated_next(k, i, 8, x);
+    i = tabulated_next(k, i, 4, x);
+    i = tabulated_next(k, i, 2, x);
+    i = tabulated_next(k, i, 1, x);
+    j = i + (i < last);
+    d = x - k->table[TABULATED_X + i];
+    h = k->table[TABULATED_X + j] - k->table[TABULATED_X + i];
+    t = d / aspi_select(h > R(0.0), h, R(1.0));
+    y = k->table[TABULATED_Y + i];
+    m = k->table[TABULATED_M + i];
+    n = k->table[TABULATED_M + j];
+    rise = k->table[TABULATED_Y + j] - y;
+    line = y + d * k->table[TABULATED_TAIL];
+    cubic = y + t * (h * m + t * ((R(3.0) * rise - h * (R(2.0) * m + n))
+                                  + t * (h * (m + n) - R(2.0) * rise)));
+    y = aspi_select(h > R(0.0), cubic, line);
+    return aspi_exp(k->table[TABULATED_NORM] + y) / (z2 * z2);
+}
+
+#include "prepared_kernel.h"
+#include "asperity/ndf_loops.h"
+#endif
