@@ -95,7 +95,7 @@ static double over_all(const asp_ndf *k, const samples *s, double power, double 
     return sum;
 }
 
-static void masking(samples *s, const char *name, double mass_bound)
+static void masking(samples *s, const char *name, double bound_above, double bound_below)
 {
     asp_ndf k = make(s);
     asp_ndff f = asp_ndf_narrow(&k);
@@ -118,11 +118,11 @@ static void masking(samples *s, const char *name, double mass_bound)
     snprintf(text, sizeof text, "%s: P22 at the samples", name);
     report(text, at, 1e-12);
     snprintf(text, sizeof text, "%s: P22 integrates to 1", name);
-    report(text, fabs(mass - 1), mass_bound);
+    report(text, fabs(mass - 1), 1e-9);
     snprintf(text, sizeof text, "%s: sigma above the horizon, by quadrature", name);
-    report(text, above, 5e-4);
+    report(text, above, bound_above);
     snprintf(text, sizeof text, "%s: sigma below the horizon", name);
-    report(text, below, 2e-3);
+    report(text, below, bound_below);
     snprintf(text, sizeof text, "%s: sigma in float32", name);
     report(text, single, 2e-6);
 }
@@ -131,7 +131,7 @@ static void masking(samples *s, const char *name, double mass_bound)
 
 static void monotone(void)
 {
-    samples s = { { 0, 0.1, 0.2, 0.25, 0.4, 0.6, 0.8 }, { 10, 10, 9.9, 1, 0.9, 0.9, 0.1 }, { 7, NULL, NULL, 3 } };
+    samples s = { { 0, 0.1, 0.2, 0.25, 0.4, 0.6, 0.8 }, { 10, 10, 9.9, 4, 3.9, 3.9, 1.5 }, { 7, NULL, NULL, 3 } };
     asp_ndf k = make(&s);
     double rise = 0, last = asp_P22(&k, 0, 0), tail;
     for (int i = 1; i <= 20000; i++) {
@@ -142,13 +142,13 @@ static void monotone(void)
     report("samples that fall and stand: P22 never rises", rise, 1e-13);
     tail = log(asp_P22(&k, 100, 0) / asp_P22(&k, 1000, 0)) / log((1e6 + 0.01) / (1e4 + 0.01));
     report("the tail is that asked for", fabs(tail - 3), 1e-9);
-    masking(&s, "steps", 1e-9);
+    masking(&s, "steps", 2.5e-3, 1e-2);
 }
 
 static void powers(void)
 {
     /* GGX through its own samples of two points: a straight line if s is alpha */
-    samples s = { { 0, 0.2, 1 }, { 1, 0.25, 1 / 676.0 }, { 3, NULL, NULL, 0 } };
+    samples s = { { 0, 0.2, 0.3 }, { 1, 0.25, 1 / 10.5625 }, { 3, NULL, NULL, 0 } };
     asp_ndf k = make(&s), g;
     double worst = 0;
     asp_ndf_parse(NULL, "ggx:alpha=0.2", &g, NULL);
@@ -200,6 +200,7 @@ static const struct { const char *spec; asp_status status; const char *at, *name
     { "tabulated:slopes=0/nan,density=5/4", ASP_EINVAL, "nan", "slopes" },
     { "tabulated:slopes=0/1,density=5/0", ASP_EINVAL, "0", "density" },
     { "tabulated:slopes=0/1,density=-5/1", ASP_EINVAL, "-5", "density" },
+    { "tabulated:slopes=0/1,density=5/0.9", ASP_EINVAL, "0.9", "density" },
     { "tabulated:slopes=0,density=5", ASP_EINVAL, NULL, "slopes" },
     { "tabulated:slopes=0/1,density=5/1,tail=1.5", ASP_EINVAL, "1.5", "tail" },
     { "tabulated:slopes=0/1,density=5/1,alpha=0", ASP_EINVAL, NULL, "alpha" },
@@ -224,14 +225,14 @@ static void refusals(void)
 int main(void)
 {
     samples s;
-    take(&s, "beckmann:alpha=0.2", 0.8, 100);
-    masking(&s, "Beckmann's", 1e-9);
+    take(&s, "beckmann:alpha=0.2", 0.55, 0);
+    masking(&s, "Beckmann's", 1e-4, 1e-2);
     take(&s, "student_t:alpha=0.1,gamma=3", 2, 0);
-    masking(&s, "Student's", 1e-9);
+    masking(&s, "Student's", 2e-6, 1e-4);
     monotone();
     powers();
     laws("tabulated:slopes=0/0.1/0.3,density=5/4/1");
-    laws("tabulated:slopes=0/0.1/0.2/0.3/0.4/0.5,density=5/4.5/3/1.5/0.5/0.1,alpha_x=0.5,alpha_y=1.2,mean_x=0.2");
+    laws("tabulated:slopes=0/0.1/0.2/0.3/0.4/0.5,density=5/4.5/3/1.5/0.5/0.15,alpha_x=0.5,alpha_y=1.2,mean_x=0.2");
     refusals();
     printf("%d passed, %d failed\n", passed, failed);
     return failed != 0;

@@ -8,6 +8,7 @@
 #include "ndf/prepared.h"
 
 #define TABULATED_KNOTS 30
+#define TABULATED_STEP 5.0
 
 /* table[]: s^2, log of 1/mass, the last knot, the slope beyond it, then x, log P22 and d log P22/dx of the
  * knots. */
@@ -16,8 +17,6 @@ enum { TABULATED_S2, TABULATED_NORM, TABULATED_LAST, TABULATED_TAIL, TABULATED_X
        TABULATED_END = TABULATED_M + TABULATED_KNOTS };
 
 typedef char tabulated_fits[TABULATED_END <= PREPARED_OWN ? 1 : -1];
-typedef char tabulated_prepared_fits[PREPARED_TAIL + (PREPARED_VIEW_CELLS + 3) * PREPARED_TAIL_ROW
-                                     <= ASP_TABLE_NUMBERS ? 1 : -1];
 
 #define ASP_PRECISION 64
 #include "asperity/elementary.h"
@@ -116,6 +115,11 @@ static asp_status tabulated_check(const asp_slope_samples *s, asp_error *err)
             return tabulated_refuse(err, "slopes", s->slope[i], low, i > 0, 1e3, i);
         if (!(s->density[i] >= 1e-100 && s->density[i] <= 1e100))
             return tabulated_refuse(err, "density", s->density[i], 1e-100, 0, 1e100, i);
+        /* steeper, and what is prepared from the samples is worse than stated */
+        if (i && !(s->density[i] <= TABULATED_STEP * s->density[i - 1]
+                   && s->density[i - 1] <= TABULATED_STEP * s->density[i]))
+            return tabulated_refuse(err, "density", s->density[i], s->density[i - 1] / TABULATED_STEP, 0,
+                                    s->density[i - 1] * TABULATED_STEP, i);
     }
     if (s->tail != 0 && !(s->tail >= 2 && s->tail <= 1e3))
         return asp_fail_range(err, "tail", s->tail, 2, 0, 1e3);
@@ -156,6 +160,7 @@ static asp_status tabulated_prepare(asp_ndf *out, asp_error *err)
 }
 #undef ASP_PRECISION
 
+#define ASP_SCALAR_LOOPS        /* gcc 12 leaves the search in float64 as it is */
 #define ASP_NDF tabulated
 #define ASP_PRECISION 64
 #include "tabulated.c"
@@ -166,7 +171,7 @@ static asp_status tabulated_prepare(asp_ndf *out, asp_error *err)
 
 ASP_RECORD asp_model asp_model_tabulated = {
     "tabulated", NULL, "a density of slopes measured ring by ring", "samples of P22 over the slope",
-    ASP_KEYS_SLOPE, 1.0, 1, 5e-4, NULL, 0, tabulated_prepare, ASP_NDF_OPS(tabulated)
+    ASP_KEYS_SLOPE, 1.0, 1, 2.5e-3, NULL, 0, tabulated_prepare, ASP_NDF_OPS(tabulated)
 };
 #undef ASP_NDF
 
@@ -184,23 +189,25 @@ asp_status asp_tabulated_make(const asp_slope_samples *samples, const asp_map *m
 
 /* One step of the search: to knot i + step, if x lies there or beyond. i + step is 31 at most: what is read
  * there behind the knots does not count. */
-ASP_FN int tabulated_next(const asp_shape *k, int i, int step, asp_real x)
+ASP_FN asp_real tabulated_next(const asp_shape *k, asp_real i, asp_real step, asp_real x)
 {
-    int to = i + step;
-    int there = (x >= k->table[TABULATED_X + to]) & ((asp_real)to <= k->table[TABULATED_LAST]);
-    return i + step * there;
+    asp_real to = i + step, at = k->table[TABULATED_X + (int)to];
+    asp_real taken = aspi_select(x >= at, to, i);
+    return aspi_select(to <= k->table[TABULATED_LAST], taken, i);
 }
 
 ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
 {
     asp_real x = aspi_log((r2 + k->table[TABULATED_S2] * z2) / z2), h, d, t, y, m, n, rise, line, cubic;
-    int last = (int)k->table[TABULATED_LAST], i = 0, j;
-    i = tabulated_next(k, i, 16, x);
-    i = tabulated_next(k, i, 8, x);
-    i = tabulated_next(k, i, 4, x);
-    i = tabulated_next(k, i, 2, x);
-    i = tabulated_next(k, i, 1, x);
-    j = i + (i < last);
+    asp_real at = R(0.0), last = k->table[TABULATED_LAST];
+    int i, j;
+    at = tabulated_next(k, at, R(16.0), x);
+    at = tabulated_next(k, at, R(8.0), x);
+    at = tabulated_next(k, at, R(4.0), x);
+    at = tabulated_next(k, at, R(2.0), x);
+    at = tabulated_next(k, at, R(1.0), x);
+    i = (int)at;
+    j = (int)aspi_select(at < last, at + R(1.0), last);
     d = x - k->table[TABULATED_X + i];
     h = k->table[TABULATED_X + j] - k->table[TABULATED_X + i];
     t = d / aspi_select(h > R(0.0), h, R(1.0));
