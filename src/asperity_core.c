@@ -88,5 +88,7 @@
 #undef ASP_PRECISION
 #include "ndf/student_t.c"
 #undef ASP_PRECISION
+#include "ndf/tabulated.c"
+#undef ASP_PRECISION
 #include "ndf/torrance_sparrow.c"
 #undef ASP_PRECISION
