@@ -23,7 +23,7 @@ static double normal_term(const void *context, double r, int index)
  * distribution states an error above 1e-4 of what is prepared from it. */
 static double sum_allowed(const aspi_trial *t)
 {
-    return t->ndf->model->area_error > 1e-4 ? 0.02 * t->ndf->model->area_error : 1e-10;
+    return t->ndf->model->area_error > 1e-4 ? 0.1 * t->ndf->model->area_error : 1e-10;
 }
 
 void aspi_law_normalisation(aspi_trial *t)
