@@ -67,13 +67,22 @@ typedef struct asp_param {
 } asp_param;
 
 /* Everything a reflection needs of the surface: a visible normal seen from wi by its height and its
- * cosine to wi, the mirrored direction, D, and the projected areas from both. */
+ * cosine to wi, the mirrored direction, D, and the projected areas from both; sigma_o is of no
+ * meaning where wo points down. */
 typedef struct asp_reflection {
     double wo_x, wo_y, wo_z, m_z, cosine, density, sigma_i, sigma_o;
 } asp_reflection;
 typedef struct asp_reflectionf {
     float wo_x, wo_y, wo_z, m_z, cosine, density, sigma_i, sigma_o;
 } asp_reflectionf;
+
+/* The same of a block. */
+typedef struct asp_reflections {
+    double *wo_x, *wo_y, *wo_z, *m_z, *cosine, *density, *sigma_i, *sigma_o;
+} asp_reflections;
+typedef struct asp_reflectionsf {
+    float *wo_x, *wo_y, *wo_z, *m_z, *cosine, *density, *sigma_i, *sigma_o;
+} asp_reflectionsf;
 
 /* The distribution in one precision, as the world sees it, through its slope map; ndf_loops.h makes
  * all of it from the four formulas.
@@ -101,6 +110,8 @@ typedef struct asp_ndf_ops {
                       double *mz);
     void (*normal_n)(const asp_ndf *k, size_t n, const double *u1, const double *u2,
                      double *mx, double *my, double *mz);
+    void (*reflect_n)(const asp_ndf *k, size_t n, const double *wx, const double *wy, const double *wz,
+                      const double *u1, const double *u2, const asp_reflections *out);
 } asp_ndf_ops;
 
 typedef struct asp_ndf_opsf {
@@ -119,6 +130,8 @@ typedef struct asp_ndf_opsf {
                       float *mz);
     void (*normal_n)(const asp_ndff *k, size_t n, const float *u1, const float *u2,
                      float *mx, float *my, float *mz);
+    void (*reflect_n)(const asp_ndff *k, size_t n, const float *wx, const float *wy, const float *wz,
+                      const float *u1, const float *u2, const asp_reflectionsf *out);
 } asp_ndf_opsf;
 
 /* How a spec gives the slope map. */
@@ -164,7 +177,7 @@ void asp_ndf_stretch(asp_ndf *out, double by);
 #endif
 
 #define ASP_NDF_OPS_(n, s) { n##density_1##s, n##sigma_1##s, n##visible_1##s, n##normal_1##s, n##reflect_1##s, \
-    n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s }
+    n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s, n##reflect_n##s }
 #define ASP_NDF_OPS_LATTICE(n, lattice) ASP_NDF_OPS_(n##_, _64), ASP_NDF_OPS_(n##_, _32), lattice
 #define ASP_NDF_OPS(n) ASP_NDF_OPS_LATTICE(n, NULL)
 

@@ -13,8 +13,8 @@
 #define aspi_at ASP_NAME(aspi_at)
 #define aspi_dot ASP_NAME(aspi_dot)
 #define aspi_length2 ASP_NAME(aspi_length2)
+#define aspi_unit_scale ASP_NAME(aspi_unit_scale)
 #define aspi_normalize ASP_NAME(aspi_normalize)
-#define aspi_density_facet ASP_NAME(aspi_density_facet)
 #define aspi_density_result ASP_NAME(aspi_density_result)
 #define aspi_reflect ASP_NAME(aspi_reflect)
 #define aspi_masked ASP_NAME(aspi_masked)
@@ -27,6 +27,8 @@
 /* What a density is cut at instead of overflowing, and what a denominator is kept above: at most
  * 1e10 of D, 1e20 of 1/sigma and 1e5 of the rest are ever multiplied. */
 #define ASP_LARGEST (ASP_PRECISION == 64 ? R(1e300) : R(3e38))
+/* Squared lengths are kept above this where they divide. */
+#define ASP_TINY (ASP_PRECISION == 64 ? R(1e-300) : R(1e-37))
 #define ASP_SMALLEST (ASP_PRECISION == 64 ? R(1e-150) : R(1e-19))
 #endif
 
@@ -72,11 +74,17 @@ ASP_FN asp_v3 aspi_reflect(asp_v3 wi, asp_v3 m)
     return m;
 }
 
+/* What makes a vector of squared length l2 a unit vector; 1 for the zero vector. */
+ASP_FN asp_real aspi_unit_scale(asp_real l2)
+{
+    return R(1.0) / aspi_sqrt(l2 > R(0.0) ? l2 : R(1.0));
+}
+
 /* Unit vector of a; the zero vector gives the normal of the flat surface. */
 ASP_FN asp_v3 aspi_normalize(asp_v3 a)
 {
     asp_real l2 = a.x * a.x + a.y * a.y + a.z * a.z;
-    asp_real scale = R(1.0) / aspi_sqrt(l2 > R(0.0) ? l2 : R(1.0));
+    asp_real scale = aspi_unit_scale(l2);
     asp_v3 out;
     out.x = a.x * scale;
     out.y = a.y * scale;
@@ -115,20 +123,11 @@ ASP_FN asp_v3 aspi_facet_back(const asp_shape *k, asp_v3 m)
     return v;
 }
 
-/* The same for D(m): its z is 1 where the facet is vertical or turned down, and aspi_density_result
- * makes that 0. */
-ASP_FN asp_v3 aspi_density_facet(const asp_shape *k, asp_v3 m)
-{
-    asp_v3 v = aspi_facet(k, m);
-    v.z = v.z <= ASP_FLAT ? R(1.0) : v.z;
-    return v;
-}
-
-/* D(m) = D_std(m') / |det M|; 0 for facets that are vertical or turned down. */
+/* D(m) = D_std(m') / |det M|; 0 for facets that are vertical or turned down, whatever the formula made
+ * of them. */
 ASP_FN asp_real aspi_density_result(const asp_shape *k, asp_real standard, asp_real mz)
 {
-    asp_real d = aspi_finite(standard * k->inv_det);
-    return mz <= ASP_FLAT ? R(0.0) : d;
+    return aspi_select(mz <= ASP_FLAT, R(0.0), aspi_finite(standard * k->inv_det));
 }
 
 /* The projected area that masking divides by, w.z / G1: never less than w.z. `min`: Walter et al.

@@ -7,6 +7,7 @@
 #define aspi_unit_cosine ASP_NAME(aspi_unit_cosine)
 #define aspi_fresnel_dielectric ASP_NAME(aspi_fresnel_dielectric)
 #define aspi_fresnel_conductor ASP_NAME(aspi_fresnel_conductor)
+#define aspi_fresnel_conductor_at ASP_NAME(aspi_fresnel_conductor_at)
 #define aspi_fresnel_schlick ASP_NAME(aspi_fresnel_schlick)
 #define aspi_fresnel_f82 ASP_NAME(aspi_fresnel_f82)
 #endif
@@ -43,10 +44,9 @@ ASP_FN asp_real aspi_fresnel_dielectric(asp_real cosine, asp_real eta)
 }
 
 /* Unpolarised reflectance of eta + i k: Rs = (t1 - t2)/(t1 + t2), Rp = Rs (t3 - t4)/(t3 + t4), and
- * their mean over one denominator. */
-ASP_FN asp_real aspi_fresnel_conductor(asp_real cosine, asp_real eta, asp_real k)
+ * their mean over one denominator. `_at`: c is in [0, 1], clamped once for three channels. */
+ASP_FN asp_real aspi_fresnel_conductor_at(asp_real c, asp_real eta, asp_real k)
 {
-    asp_real c = aspi_unit_cosine(cosine);
     asp_real c2 = c * c, s2 = R(1.0) - c2;
     asp_real eta2 = eta * eta, k2 = k * k;
     asp_real t0 = eta2 - k2 - s2;
@@ -57,6 +57,11 @@ ASP_FN asp_real aspi_fresnel_conductor(asp_real cosine, asp_real eta, asp_real k
     asp_real t3 = c2 * m + s2 * s2, t4 = t2 * s2;
     asp_real over = (t1 + t2) * (t3 + t4);
     return (t1 - t2) * t3 / (over < R(1e-30) ? R(1e-30) : over);
+}
+
+ASP_FN asp_real aspi_fresnel_conductor(asp_real cosine, asp_real eta, asp_real k)
+{
+    return aspi_fresnel_conductor_at(aspi_unit_cosine(cosine), eta, k);
 }
 
 /* Schlick 1994. */

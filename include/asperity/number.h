@@ -69,6 +69,10 @@
 #define ndf_world_density ASP_NDF_NAME(_world_density)
 #define ndf_world_visible ASP_NDF_NAME(_world_visible)
 #define ndf_world_normal ASP_NDF_NAME(_world_normal)
+#define ndf_reflect ASP_NDF_NAME(_reflect)
+#define ndf_sigma_up ASP_NDF_NAME(_sigma_up)
+#define ndf_sigma_up_at ASP_NDF_NAME(_sigma_up_at)
+#define ndf_reflect_n ASP_NDF_NAME(_reflect_n)
 #define ndf_density_1 ASP_NDF_NAME(_density_1)
 #define ndf_sigma_1 ASP_NDF_NAME(_sigma_1)
 #define ndf_visible_1 ASP_NDF_NAME(_visible_1)
@@ -99,6 +103,7 @@
 #undef asp_c3
 #undef asp_shape
 #undef asp_mirrored
+#undef asp_mirrored_s
 #if ASP_PRECISION == 64
 #define ASP_SUFFIX _64
 #define asp_real double
@@ -108,6 +113,7 @@
 #define asp_c3 asp_rgb
 #define asp_shape asp_ndf
 #define asp_mirrored asp_reflection
+#define asp_mirrored_s asp_reflections
 #elif ASP_PRECISION == 32
 #define ASP_SUFFIX _32
 #define asp_real float
@@ -117,6 +123,7 @@
 #define asp_c3 asp_rgbf
 #define asp_shape asp_ndff
 #define asp_mirrored asp_reflectionf
+#define asp_mirrored_s asp_reflectionsf
 #else
 #error "define ASP_PRECISION as 64 or 32"
 #endif

@@ -35,11 +35,12 @@ ASP_FN asp_real aspi_fresnel_film(const asp_real *f, asp_real c)
 /* Numbers go by pointer: small structs of floats stall in the usual calling convention. */
 ASP_FN void aspi_fresnel(const asp_mat *mat, asp_real c, asp_real F[3])
 {
+    asp_real unit = aspi_unit_cosine(c);
     switch (mat->fresnel) {
     case ASPI_FRESNEL_CONDUCTOR:
-        F[0] = aspi_fresnel_conductor(c, mat->c.r, mat->d.r);
-        F[1] = aspi_fresnel_conductor(c, mat->c.g, mat->d.g);
-        F[2] = aspi_fresnel_conductor(c, mat->c.b, mat->d.b);
+        F[0] = aspi_fresnel_conductor_at(unit, mat->c.r, mat->d.r);
+        F[1] = aspi_fresnel_conductor_at(unit, mat->c.g, mat->d.g);
+        F[2] = aspi_fresnel_conductor_at(unit, mat->c.b, mat->d.b);
         break;
     case ASPI_FRESNEL_F82:
         F[0] = aspi_fresnel_f82(c, mat->c.r, mat->d.r);

@@ -20,8 +20,6 @@
 #define ASPI_FACETS_NAMES
 #define visible_density ASP_NAME(visible_density)
 #define slope_facet ASP_NAME(slope_facet)
-#define put_block ASP_NAME(put_block)
-#define any_among ASP_NAME(any_among)
 #define masking ASP_NAME(masking)
 #define lambda_of ASP_NAME(lambda_of)
 #define joint_masking ASP_NAME(joint_masking)
@@ -305,33 +303,16 @@ void ASPI_CALL(asp_G2_n)(const asp_shape *k, size_t n, asp_cv3s wi, asp_cv3s wo,
     }
 }
 
-/* A block's normals, of which some may go where its inputs are. */
-static void put_block(asp_v3s to, size_t i, size_t size, asp_real m[3][ASP_BLOCK])
-{
-    memcpy(to.x + i, m[0], size * sizeof **m);
-    memcpy(to.y + i, m[1], size * sizeof **m);
-    memcpy(to.z + i, m[2], size * sizeof **m);
-}
-
-ASP_FN int any_among(asp_v3s out, const asp_real *a, const asp_real *b, const asp_real *c)
-{
-    asp_cv3s in;
-    in.x = a;
-    in.y = b;
-    in.z = c;
-    return aspi_among(out.x, in) || aspi_among(out.y, in) || aspi_among(out.z, in);
-}
-
 void ASPI_CALL(asp_sample_normal_n)(const asp_shape *k, size_t n, const asp_real *u1,
                                     const asp_real *u2, asp_v3s m)
 {
     asp_real s[3][ASP_BLOCK];
-    int in_place = any_among(m, u1, u2, u2);
+    int in_place = aspi_any_among(m, u1, u2, u2);
     size_t i, size;
     ASPI_FOR_BLOCKS(i, size, n) {
         if (in_place) {
             ASPI_OPS(k).normal_n(k, size, u1 + i, u2 + i, s[0], s[1], s[2]);
-            put_block(m, i, size, s);
+            aspi_put_rows(m, i, size, s);
         } else {
             ASPI_OPS(k).normal_n(k, size, u1 + i, u2 + i, m.x + i, m.y + i, m.z + i);
         }
@@ -342,13 +323,13 @@ void ASPI_CALL(asp_sample_visible_n)(const asp_shape *k, size_t n, asp_cv3s wi, 
                                      const asp_real *u2, asp_v3s m)
 {
     asp_real s[3][ASP_BLOCK];
-    int in_place = any_among(m, wi.x, wi.y, wi.z) || any_among(m, u1, u2, u2);
+    int in_place = aspi_any_among(m, wi.x, wi.y, wi.z) || aspi_any_among(m, u1, u2, u2);
     size_t i, size;
     ASPI_FOR_BLOCKS(i, size, n) {
         if (in_place) {
             ASPI_OPS(k).visible_n(k, size, wi.x + i, wi.y + i, wi.z + i, u1 + i, u2 + i, s[0], s[1],
                                   s[2]);
-            put_block(m, i, size, s);
+            aspi_put_rows(m, i, size, s);
         } else {
             ASPI_OPS(k).visible_n(k, size, wi.x + i, wi.y + i, wi.z + i, u1 + i, u2 + i, m.x + i,
                                   m.y + i, m.z + i);

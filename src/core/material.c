@@ -24,9 +24,11 @@
 #define share_of ASP_NAME(share_of)
 #define eval_scaled ASP_NAME(eval_scaled)
 #define density_of ASP_NAME(density_of)
+#define facet_part ASP_NAME(facet_part)
 #define sigma_of ASP_NAME(sigma_of)
 #define sample_pure ASP_NAME(sample_pure)
 #define sample_mixed ASP_NAME(sample_mixed)
+#define sample_own ASP_NAME(sample_own)
 #define third_number ASP_NAME(third_number)
 #endif
 
@@ -51,6 +53,15 @@ ASP_FN asp_real sigma_of(const asp_shape *k, asp_v3 w)
     return ASPI_OPS(k).sigma(k, w.x, w.y, w.z);
 }
 
+/* aspi_facet_part; a constant mask spares the default the others' arithmetic. */
+ASP_FN asp_real facet_part(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c,
+                           asp_real sigma_i, asp_real sigma_o, asp_real scale)
+{
+    return mat->mask == 0
+         ? aspi_facet_part(&mat->ndf, wi, wo, mz, c, sigma_i, sigma_o, scale, 0)
+         : aspi_facet_part(&mat->ndf, wi, wo, mz, c, sigma_i, sigma_o, scale, mat->mask);
+}
+
 static asp_real share_of(const asp_mat *mat, asp_real ci)
 {
     asp_real F[3];
@@ -67,8 +78,7 @@ ASP_FN asp_c3 eval_scaled(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real by)
     asp_v3 m = aspi_half_vector(wi, wo);
     asp_real c = aspi_dot(wi, m);
     asp_real D = density_of(k, m);
-    asp_real x = aspi_facet_part(k, wi, wo, m.z, c, sigma_of(k, wi),
-                            sigma_of(k, wo), R(0.25) * D, mat->mask);
+    asp_real x = facet_part(mat, wi, wo, m.z, c, sigma_of(k, wi), sigma_of(k, wo), R(0.25) * D);
     asp_real y = aspi_min(wi.z, wo.z) <= R(0.0) ? R(0.0) : by;
     asp_c3 out;
     value_of(mat, c, x * y, y, &out);
@@ -105,41 +115,44 @@ asp_real ASPI_CALL(asp_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 }
 
 /* Visible normals only: D cancels in the weight, which is F J sigma_i cos_o. */
-ASP_FN void sample_pure(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_sampled *out)
+ASP_FN asp_sampled sample_pure(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
 {
-    const asp_shape *k = &mat->ndf;
+    asp_sampled out;
     asp_mirrored s;
+    asp_c3 weight;
+    asp_v3 wo;
     asp_real x;
-    ASPI_OPS(k).reflect(k, wi.x, wi.y, wi.z, u1, u2, &s);
-    out->wo.x = s.wo_x;
-    out->wo.y = s.wo_y;
-    out->wo.z = s.wo_z;
-    out->pdf = aspi_lobe_density(wi.z, s.density, s.sigma_i);
-    x = aspi_above(s.wo_z)
-      * aspi_facet_part(k, wi, out->wo, s.m_z, s.cosine, s.sigma_i, s.sigma_o, s.sigma_i,
-                        mat->mask);
-    value_of(mat, s.cosine, x, x, &out->weight);
+    ASPI_OPS(&mat->ndf).reflect(&mat->ndf, wi.x, wi.y, wi.z, u1, u2, &s);
+    wo = aspi_vector(s.wo_x, s.wo_y, s.wo_z);
+    x = aspi_above(wo.z) * facet_part(mat, wi, wo, s.m_z, s.cosine, s.sigma_i, s.sigma_o, s.sigma_i);
+    value_of(mat, s.cosine, x, x, &weight);
+    out.wo = wo;
+    out.pdf = aspi_lobe_density(wi.z, s.density, s.sigma_i);
+    out.weight = weight;
+    return out;
 }
 
 /* Facets or base by u1, which is stretched again; the density is that of the mixture. */
-static void sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_sampled *out)
+static asp_sampled sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
 {
+    asp_sampled out;
     const asp_shape *k = &mat->ndf;
     asp_real sigma_i = sigma_of(k, wi), share = share_of(mat, wi.z), c, D, x, y, scale;
     asp_v3 m;
     int facet = u1 < share;
     u1 = facet ? u1 / share : (u1 - share) / (R(1.0) - share);
     m = ASPI_CALL(asp_sample_visible)(k, wi, u1, u2);
-    out->wo = facet ? aspi_reflect(wi, m) : aspi_cosine_lobe(wi, u1, u2);
-    m = aspi_half_vector(wi, out->wo);
+    out.wo = facet ? aspi_reflect(wi, m) : aspi_cosine_lobe(wi, u1, u2);
+    m = aspi_half_vector(wi, out.wo);
     c = aspi_dot(wi, m);
     D = density_of(k, m);
-    out->pdf = aspi_mixed_density(wi.z, out->wo.z, aspi_lobe_density(wi.z, D, sigma_i), share);
-    y = aspi_min(wi.z, out->wo.z) <= R(0.0) || out->pdf <= R(0.0) ? R(0.0) : out->wo.z / out->pdf;
-    scale = out->pdf <= R(0.0) ? R(0.0) : R(0.25) * D / out->pdf;
-    x = aspi_above(out->wo.z)
-      * aspi_facet_part(k, wi, out->wo, m.z, c, sigma_i, sigma_of(k, out->wo), scale, mat->mask);
-    value_of(mat, c, x, y, &out->weight);
+    out.pdf = aspi_mixed_density(wi.z, out.wo.z, aspi_lobe_density(wi.z, D, sigma_i), share);
+    y = aspi_min(wi.z, out.wo.z) <= R(0.0) || out.pdf <= R(0.0) ? R(0.0) : out.wo.z / out.pdf;
+    scale = out.pdf <= R(0.0) ? R(0.0) : R(0.25) * D / out.pdf;
+    x = aspi_above(out.wo.z)
+      * facet_part(mat, wi, out.wo, m.z, c, sigma_i, sigma_of(k, out.wo), scale);
+    value_of(mat, c, x, y, &out.weight);
+    return out;
 }
 
 /* A number that knows nothing of u1 and u2 but is made of their bits. */
@@ -154,15 +167,18 @@ asp_sampled ASPI_CALL(asp_sample)(const asp_mat *mat, asp_v3 wi, asp_real u1, as
     return ASPI_CALL(asp_sample_lobe)(mat, wi, u1, u2, third_number(u1, u2));
 }
 
-asp_sampled ASPI_CALL(asp_sample_lobe)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
+static asp_sampled sample_own(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
 {
     asp_sampled out;
-    if (mat->model->ASPI_CALL(sample))
-        mat->model->ASPI_CALL(sample)(mat, &wi, u1, u2, u3, &out);
-    else if (mat->model->mixed)
-        sample_mixed(mat, wi, u1, u2, &out);
-    else
-        sample_pure(mat, wi, u1, u2, &out);
+    mat->model->ASPI_CALL(sample)(mat, &wi, u1, u2, u3, &out);
     return out;
+}
+
+/* Returned from each: a copy of what was just written in parts would stall. */
+asp_sampled ASPI_CALL(asp_sample_lobe)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
+{
+    if (mat->model->ASPI_CALL(sample))
+        return sample_own(mat, wi, u1, u2, u3);
+    return mat->model->mixed ? sample_mixed(mat, wi, u1, u2) : sample_pure(mat, wi, u1, u2);
 }
 #endif

@@ -36,6 +36,7 @@
 #define loop_choose ASP_NAME(loop_choose)
 #define loop_mixed_direction ASP_NAME(loop_mixed_direction)
 #define loop_mixed_parts ASP_NAME(loop_mixed_parts)
+#define loop_unit ASP_NAME(loop_unit)
 #define loop_one ASP_NAME(loop_one)
 #define loop_film ASP_NAME(loop_film)
 #define loop_conductor ASP_NAME(loop_conductor)
@@ -97,8 +98,8 @@ ASP_FN void loop_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, asp_
     }
 }
 
-ASP_FN void loop_weights(const asp_shape *k, size_t n, int mask, asp_cv3s wi,
-                         IN ox, IN oy, IN oz, IN mz, IN c, IN sigma_i, IN sigma_o, OUT x)
+ASP_FN void loop_weights(const asp_shape *k, size_t n, int mask, asp_cv3s wi, IN ox, IN oy, IN oz, IN mz,
+                         IN c, IN D, IN sigma_i, IN sigma_o, asp_real *pdf, OUT x)
 {
     size_t i;
     ASP_IN_PLACE
@@ -108,6 +109,7 @@ ASP_FN void loop_weights(const asp_shape *k, size_t n, int mask, asp_cv3s wi,
         b = aspi_at(ox, oy, oz, i);
         x[i] = aspi_above(b.z)
              * aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], sigma_i[i], mask);
+        pdf[i] = aspi_lobe_density(a.z, D[i], sigma_i[i]);
     }
 }
 
@@ -178,7 +180,7 @@ ASP_FN void loop_conductor(size_t n, asp_real eta, asp_real kappa, IN c, OUT F)
 {
     size_t i;
     for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_conductor(c[i], eta, kappa);
+        F[i] = aspi_fresnel_conductor_at(c[i], eta, kappa);
 }
 
 ASP_FN void loop_f82(size_t n, asp_real f0, asp_real tint, IN c, OUT F)
@@ -202,6 +204,13 @@ ASP_FN void loop_film(size_t n, IN table, IN c, OUT F)
         F[i] = aspi_fresnel_film(table, c[i]);
 }
 
+ASP_FN void loop_unit(size_t n, IN cosine, OUT c)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        c[i] = aspi_unit_cosine(cosine[i]);
+}
+
 ASP_FN void loop_one(size_t n, IN c, OUT F)
 {
     size_t i;
@@ -214,11 +223,13 @@ ASP_FN void loop_one(size_t n, IN c, OUT F)
 ASP_FN void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c, asp_real *r, asp_real *g,
                           asp_real *b)
 {
+    asp_real unit[ASP_BLOCK];
     switch (mat->fresnel) {
     case ASPI_FRESNEL_CONDUCTOR:
-        loop_conductor(n, mat->c.r, mat->d.r, c, r);
-        loop_conductor(n, mat->c.g, mat->d.g, c, g);
-        loop_conductor(n, mat->c.b, mat->d.b, c, b);
+        loop_unit(n, c, unit);
+        loop_conductor(n, mat->c.r, mat->d.r, unit, r);
+        loop_conductor(n, mat->c.g, mat->d.g, unit, g);
+        loop_conductor(n, mat->c.b, mat->d.b, unit, b);
         break;
     case ASPI_FRESNEL_F82:
         loop_f82(n, mat->c.r, mat->d.r, c, r);
@@ -258,7 +269,7 @@ ASP_CLONES static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp
     const asp_shape *k = &mat->ndf;
     asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK];
     asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK], y[ASP_BLOCK];
-    asp_real ones[ASP_BLOCK], F[3][ASP_BLOCK];
+    asp_real ones[ASP_BLOCK];
     size_t i;
     if (!n)
         return;
@@ -272,11 +283,8 @@ ASP_CLONES static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp
         loop_parts(k, n, 0, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
     else
         loop_parts(k, n, mat->mask, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
-    block_fresnel(mat, n, c, F[0], F[1], F[2]);
-    mat->model->ASPI_CALL(value_n)(mat, n, x, y, F[0], F[1], F[2]);
-    memcpy(out.r, F[0], n * sizeof *out.r);
-    memcpy(out.g, F[1], n * sizeof *out.g);
-    memcpy(out.b, F[2], n * sizeof *out.b);
+    block_fresnel(mat, n, c, out.r, out.g, out.b);
+    mat->model->ASPI_CALL(value_n)(mat, n, x, y, out.r, out.g, out.b);
 }
 
 ASP_CLONES static void block_pdf(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
@@ -299,62 +307,55 @@ ASP_CLONES static void block_pdf(const asp_mat *mat, size_t n, asp_cv3s wi, asp_
 
 /* Visible normals only: D cancels in the weight, which is F J sigma_i cos_o. */
 ASP_CLONES static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s wi,
-                                         const asp_real *u1,
-                                         const asp_real *u2, asp_real o[3][ASP_BLOCK], asp_real *pdf,
-                                         asp_real F[3][ASP_BLOCK])
+                                         const asp_real *u1, const asp_real *u2, asp_v3s wo,
+                                         asp_real *pdf, asp_c3s F)
 {
     const asp_shape *k = &mat->ndf;
-    asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK];
-    asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK];
-    asp_cv3s wo;
+    asp_real mz[ASP_BLOCK], c[ASP_BLOCK], D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK];
+    asp_mirrored_s to;
     if (!n)
         return;
-    wo.x = o[0];
-    wo.y = o[1];
-    wo.z = o[2];
-    ASPI_OPS(k).visible_n(k, n, wi.x, wi.y, wi.z, u1, u2, mx, my, mz);
-    loop_reflect(n, wi.x, wi.y, wi.z, mx, my, mz, o[0], o[1], o[2], c);
-    ASPI_OPS(k).density_n(k, n, mx, my, mz, D);
-    ASPI_OPS(k).sigma_n(k, n, R(1.0), wi.x, wi.y, wi.z, si);
-    ASPI_OPS(k).sigma_n(k, n, R(1.0), wo.x, wo.y, wo.z, so);
-    loop_lobe_density(n, wi.z, D, si, pdf);
+    to.wo_x = wo.x;
+    to.wo_y = wo.y;
+    to.wo_z = wo.z;
+    to.m_z = mz;
+    to.cosine = c;
+    to.density = D;
+    to.sigma_i = si;
+    to.sigma_o = so;
+    ASPI_OPS(k).reflect_n(k, n, wi.x, wi.y, wi.z, u1, u2, &to);
     if (mat->mask == 0) /* a constant here spares the default the other masks' arithmetic */
-        loop_weights(k, n, 0, wi, o[0], o[1], o[2], mz, c, si, so, x);
+        loop_weights(k, n, 0, wi, wo.x, wo.y, wo.z, mz, c, D, si, so, pdf, x);
     else
-        loop_weights(k, n, mat->mask, wi, o[0], o[1], o[2], mz, c, si, so, x);
-    block_fresnel(mat, n, c, F[0], F[1], F[2]);
-    mat->model->ASPI_CALL(value_n)(mat, n, x, x, F[0], F[1], F[2]);
+        loop_weights(k, n, mat->mask, wi, wo.x, wo.y, wo.z, mz, c, D, si, so, pdf, x);
+    block_fresnel(mat, n, c, F.r, F.g, F.b);
+    mat->model->ASPI_CALL(value_n)(mat, n, x, x, F.r, F.g, F.b);
 }
 
 ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s wi,
                                           const asp_real *u1,
-                                          const asp_real *u2, asp_real o[3][ASP_BLOCK], asp_real *pdf,
-                                          asp_real F[3][ASP_BLOCK])
+                                          const asp_real *u2, asp_v3s wo, asp_real *pdf, asp_c3s F)
 {
     const asp_shape *k = &mat->ndf;
     asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK];
     asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK], y[ASP_BLOCK];
     asp_real share[ASP_BLOCK], facet[ASP_BLOCK], v1[ASP_BLOCK];
-    asp_cv3s wo;
     if (!n)
         return;
-    wo.x = o[0];
-    wo.y = o[1];
-    wo.z = o[2];
     block_share(mat, n, wi.z, share);
     loop_choose(n, share, u1, facet, v1);
     ASPI_OPS(k).visible_n(k, n, wi.x, wi.y, wi.z, v1, u2, mx, my, mz);
-    loop_reflect(n, wi.x, wi.y, wi.z, mx, my, mz, o[0], o[1], o[2], c);
-    loop_mixed_direction(n, wi, facet, v1, u2, o[0], o[1], o[2]);
-    loop_half(n, wi.x, wi.y, wi.z, o[0], o[1], o[2], mx, my, mz, c);
+    loop_reflect(n, wi.x, wi.y, wi.z, mx, my, mz, wo.x, wo.y, wo.z, c);
+    loop_mixed_direction(n, wi, facet, v1, u2, wo.x, wo.y, wo.z);
+    loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
     ASPI_OPS(k).density_n(k, n, mx, my, mz, D);
     ASPI_OPS(k).sigma_n(k, n, R(1.0), wi.x, wi.y, wi.z, si);
     ASPI_OPS(k).sigma_n(k, n, R(1.0), wo.x, wo.y, wo.z, so);
     loop_lobe_density(n, wi.z, D, si, pdf);
-    loop_mixed_density(n, wi.z, o[2], share, pdf);
-    loop_mixed_parts(k, n, mat->mask, wi, o[0], o[1], o[2], mz, c, D, si, so, pdf, x, y);
-    block_fresnel(mat, n, c, F[0], F[1], F[2]);
-    mat->model->ASPI_CALL(value_n)(mat, n, x, y, F[0], F[1], F[2]);
+    loop_mixed_density(n, wi.z, wo.z, share, pdf);
+    loop_mixed_parts(k, n, mat->mask, wi, wo.x, wo.y, wo.z, mz, c, D, si, so, pdf, x, y);
+    block_fresnel(mat, n, c, F.r, F.g, F.b);
+    mat->model->ASPI_CALL(value_n)(mat, n, x, y, F.r, F.g, F.b);
 }
 
 /* ---- batches */
@@ -395,25 +396,23 @@ void ASPI_CALL(asp_pdf_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo
 void ASPI_CALL(asp_sample_n)(const asp_mat *mat, size_t n, asp_cv3s wi, const asp_real *u1,
                              const asp_real *u2, asp_v3s wo, asp_real *pdf, asp_c3s weight)
 {
-    asp_real o[3][ASP_BLOCK], p[ASP_BLOCK], F[3][ASP_BLOCK];
+    asp_real o[3][ASP_BLOCK];
+    int in_place = aspi_any_among(wo, wi.x, wi.y, wi.z) || aspi_any_among(wo, u1, u2, u2);
     size_t i, size;
     if (mat->model->ASPI_CALL(sample)) {
         ASP_NAME(aspi_own_sample_n)(mat, n, wi, u1, u2, wo, pdf, weight);
         return;
     }
     ASPI_FOR_BLOCKS(i, size, n) {
-        size_t bytes = size * sizeof(asp_real);
+        asp_v3s to = in_place ? aspi_rows(o) : ASPI_TO(wo, i);
         if (mat->model->mixed)
-            block_sample_mixed(mat, size, ASPI_FROM(wi, i), u1 + i, u2 + i, o, p, F);
+            block_sample_mixed(mat, size, ASPI_FROM(wi, i), u1 + i, u2 + i, to, pdf + i,
+                               ASPI_TO_RGB(weight, i));
         else
-            block_sample_pure(mat, size, ASPI_FROM(wi, i), u1 + i, u2 + i, o, p, F);
-        memcpy(wo.x + i, o[0], bytes);
-        memcpy(wo.y + i, o[1], bytes);
-        memcpy(wo.z + i, o[2], bytes);
-        memcpy(pdf + i, p, bytes);
-        memcpy(weight.r + i, F[0], bytes);
-        memcpy(weight.g + i, F[1], bytes);
-        memcpy(weight.b + i, F[2], bytes);
+            block_sample_pure(mat, size, ASPI_FROM(wi, i), u1 + i, u2 + i, to, pdf + i,
+                              ASPI_TO_RGB(weight, i));
+        if (in_place)
+            aspi_put_rows(wo, i, size, o);
     }
 }
 

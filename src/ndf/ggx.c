@@ -6,6 +6,7 @@
 #include "asperity_ndf.h"
 
 #define ASP_NDF ggx
+#define ASP_NDF_SIGMA_UP
 #define ASP_PRECISION 64
 #include "ggx.c"
 #undef ASP_PRECISION
@@ -25,6 +26,7 @@ ASP_RECORD asp_model asp_model_ellipsoid = {
     "Walter, Dong, Marschner, Greenberg 2014, eqs. 1-3",
     ASP_KEYS_ELLIPSOID, 0.3, 0, 0, NULL, 0, NULL, ASP_NDF_OPS(ggx)
 };
+#undef ASP_NDF_SIGMA_UP
 #undef ASP_NDF
 
 #else
@@ -40,12 +42,16 @@ ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
 
 /* Half the hemisphere's area seen from above is its own disc, half the turned disc: (|v| + w)/2
  * (Walter et al. 2014, eq. 6 with A = 1). Below the mean plane the difference would cancel. */
+ASP_FN asp_real ndf_sigma_up(const asp_shape *k, asp_real w, asp_real s2)
+{
+    (void)k;
+    return R(0.5) * (aspi_sqrt(w * w + s2) + aspi_abs(w));
+}
+
 ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
 {
-    asp_real h = aspi_sqrt(w * w + s2);
-    asp_real up = R(0.5) * (h + aspi_abs(w));
+    asp_real up = ndf_sigma_up(k, w, s2);
     asp_real down = R(0.25) * s2 / aspi_max(up, R(1e-37));
-    (void)k;
     return w < R(0.0) ? down : up;
 }
 
