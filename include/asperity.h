@@ -301,8 +301,9 @@ asp_status asp_index_of_f82(double f0, double tint, double *eta, double *k, asp_
 typedef struct asp_bsdf asp_bsdf;        /* what a scattering model is: see asperity_ndf.h */
 
 /* What is carried from wo to wi: radiance (a path from the camera), or importance (one from a light).
- * They differ where light crosses a boundary: radiance is denser inside by eta^2, so that a dielectric's
- * f(wi, wo) = f(wo, wi) eta_o^2/eta_i^2 there. */
+ * They differ where light crosses a boundary: radiance is denser inside by eta^2. With indices n_i, n_o of
+ * the two sides a dielectric has f(wo, wi) = f(wi, wo) n_o^2/n_i^2 in radiance, and f of importance from
+ * wi to wo is f of radiance from wo to wi. */
 typedef enum asp_transport { ASP_RADIANCE = 0, ASP_IMPORTANCE = 1 } asp_transport;
 
 #define ASP_ENERGY_NUMBERS 256
