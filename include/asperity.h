@@ -296,6 +296,10 @@ asp_status asp_index_of_f82(double f0, double tint, double *eta, double *k, asp_
  * a spec in parentheses, and a colour is one number or r/g/b:
  *     conductor:metal=Au,ndf=(student_t:alpha=0.3,gamma=3),mask=uncorrelated
  *     conductor:eta=0.2/0.9/1.5,k=3.9/2.4/1.9,ndf=(ggx:alpha=0.1)      conductor:f0=0.9/0.6/0.3,tint=0.9
+ *     conductor:metal=Al,film=300,film_eta=1.4,ndf=(ggx:alpha=0.2)      (a thin film, nm)
+ *     compensated:metal=Au,form=kulla_conty,ndf=(beckmann:alpha=0.8)    (energy given back)
+ *     dielectric:eta=1.5,transport=radiance,ndf=(ggx:alpha=0.2)         plastic:albedo=0.4/0.1/0.1,eta=1.5,ndf=(ggx)
+ *     rough_diffuse:albedo=0.8,form=exact,ndf=(beckmann:alpha=1)
  *     lambert_specular:diffuse=0.2/0.1/0.05,specular=1,eta=1.5,ndf=(ggx:alpha=0.2) */
 
 typedef struct asp_bsdf asp_bsdf;        /* what a scattering model is: see asperity_ndf.h */
@@ -332,6 +336,17 @@ asp_material asp_conductor(const asp_ndf *ndf, asp_rgb eta, asp_rgb k, int mask)
  * fitted in the STD paper: f = diffuse/pi + specular F D G / (4 cos cos). */
 asp_material asp_lambert_specular(const asp_ndf *ndf, asp_rgb diffuse, asp_rgb specular, double eta,
                                   int mask);
+
+/* A dielectric: reflection and refraction, wi and wo on either side. eta = interior/exterior, [0.01, 100];
+ * 1 is no boundary: sample passes straight on with weight 1 and density 0, eval is 0. thin: 1 for a sheet. */
+asp_material asp_dielectric(const asp_ndf *ndf, double eta, int thin, int transport, int mask);
+
+/* Lambertian facets of an albedo in [0, 1]; eval is a quadrature of 466 nodes, its error about 1e-3. */
+asp_material asp_rough_diffuse(const asp_ndf *ndf, asp_rgb albedo, int mask);
+
+/* A dielectric coat, eta in (1, 10], over a Lambertian base, all reflections between them included; an
+ * albedo of 1 returns all light. Prepares a table: about 1 ms, 20 ms where azimuth matters. */
+asp_material asp_plastic(const asp_ndf *ndf, asp_rgb albedo, double eta, int mask);
 
 /* The conductor of mat's distribution and masking at n wavelengths: f with eta[i] + i k[i]. */
 void asp_eval_spectrum(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, size_t n, const double *eta,
@@ -494,7 +509,8 @@ typedef double asp_uniforms(void *state);
 /* An unbiased estimate of f cos(theta_o), single scattering included, by next-event estimation at each
  * facet met. Its spread is that of the walk: use it with many numbers, or beside a sampler. Light that crosses
  * a wall of a skewed dielectric before it meets any facet makes a Dirac peak, which only
- * asp_walk_sample sees. */
+ * asp_walk_sample sees. Where D has a pole at the horizon (student_t below gamma 1.75) the variance is
+ * infinite: sample instead. */
 asp_rgb asp_walk_eval_cos(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, asp_uniforms *next,
                           void *state);
 /* Where the walk comes out: wo, its weight f cos / (true density), and for multiple importance sampling

@@ -4,9 +4,9 @@
  * inside everything is turned round by a point reflection: directions change sign, the index becomes its
  * inverse, and the same formulas serve. Walter's eq. 22 gives F for both ways, total reflection too.
  *
- * `thin` is a sheet of the material, both faces alike and the same facet on both: with the reflections
- * inside summed up, R = 2F/(1 + F), and what passes leaves in the mirror image of the reflected
- * direction in the sheet. */
+ * `thin` is a sheet of the material whose lower face is the mirror image of the upper one: from below only
+ * heights change sign. With the reflections inside summed up R = 2F/(1 + F), and what passes leaves in the
+ * mirror image of the reflected direction in the sheet. */
 #ifndef ASP_PRECISION
 #include "bsdf/bsdf.h"
 
@@ -77,10 +77,12 @@ typedef struct case_of {
     int refracts, dark;
 } case_of;
 
-ASP_FN asp_v3 turned(asp_v3 w, asp_real sign)
+/* As seen from the side of `sign`: by a point reflection, or for a sheet by a mirror. */
+ASP_FN asp_v3 turned(asp_v3 w, asp_real sign, int thin)
 {
-    w.x = sign * w.x;
-    w.y = sign * w.y;
+    asp_real across = thin ? R(1.0) : sign;
+    w.x = across * w.x;
+    w.y = across * w.y;
     w.z = sign * w.z;
     return w;
 }
@@ -91,8 +93,8 @@ ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
     asp_real sign = wi.z < R(0.0) ? R(-1.0) : R(1.0);
     case_of k;
     k.eta = sign < R(0.0) && !thin ? R(1.0) / mat->c.r : mat->c.r;
-    k.wi = turned(wi, sign);
-    k.wo = turned(wo, sign);
+    k.wi = turned(wi, sign, thin);
+    k.wo = turned(wo, sign, thin);
     k.refracts = k.wo.z < R(0.0);
     if (thin && k.refracts) {
         k.wo.z = -k.wo.z;
@@ -142,7 +144,7 @@ static double beta(double a, double b)
 ASP_FN asp_real refracted_masking(const asp_mat *mat, const case_of *k, asp_real sigma_o)
 {
     asp_real ci = k->wi.z, co = aspi_abs(k->wo.z);
-    asp_v3 below = turned(k->wo, R(-1.0));
+    asp_v3 below = turned(k->wo, R(-1.0), 0);
     asp_real a = aspi_masked(&mat->ndf, k->wi, k->sigma_i, mat->mask) / ci;
     asp_real b = aspi_masked(&mat->ndf, below, sigma_o, mat->mask) / co;
     if ((mat->mask & 15) == ASP_MASK_UNCORRELATED)
@@ -183,7 +185,7 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
             f = share * aspi_finite(R(0.25) * D * joint_reflected(mat, &k, so));
             f = cosine ? f * co : f;
         } else if (k.wm < R(0.0)) {
-            asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, turned(k.wo, R(-1.0)));
+            asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, turned(k.wo, R(-1.0), 0));
             asp_real G2 = refracted_masking(mat, &k, so);
             f = (R(1.0) - k.F) * aspi_finite(k.c * D * aspi_bent_density(k.c, k.wm, k.eta) * G2 / k.wi.z)
               * crossing_scale(mat, &k);
@@ -215,10 +217,10 @@ static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_r
     int thin = mat->a.r > R(0.0), refracts;
     asp_real sign = wi->z < R(0.0) ? R(-1.0) : R(1.0), c, F, eta;
     asp_real nothing = (wi->x + wi->y + wi->z) * R(0.0), weight = nothing;
-    asp_v3 v = turned(*wi, sign), m, wo;
+    asp_v3 v = turned(*wi, sign, thin), m, wo;
     case_of k;
     out->pdf = nothing;
-    out->wo = turned(*wi, R(-1.0));
+    out->wo = turned(*wi, R(-1.0), 0);
     out->weight.r = out->weight.g = out->weight.b = nothing;
     if (mat->c.r == R(1.0)) {
         /* nothing is there: the light goes on */
@@ -236,7 +238,7 @@ static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_r
     wo = refracts && !thin ? aspi_refract(v, m, eta) : aspi_reflect(v, m);
     if (refracts && thin)
         wo.z = -wo.z;
-    out->wo = turned(wo, sign);
+    out->wo = turned(wo, sign, thin);
     if (refracts ? wo.z >= R(0.0) : wo.z <= R(0.0))
         return; /* into the surface again: single scattering loses this light */
     k = make_case(mat, *wi, out->wo);
@@ -247,7 +249,7 @@ static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_r
         asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, k.wo);
         weight = k.sigma_i * aspi_abs(k.wo.z) * joint_reflected(mat, &k, so);
     } else {
-        asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, turned(k.wo, R(-1.0)));
+        asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, turned(k.wo, R(-1.0), 0));
         weight = refracted_masking(mat, &k, so) * k.sigma_i / k.wi.z * crossing_scale(mat, &k);
     }
     out->weight.r = out->weight.g = out->weight.b = weight;

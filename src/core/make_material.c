@@ -62,6 +62,32 @@ asp_material asp_lambert_specular(const asp_ndf *ndf, asp_rgb diffuse, asp_rgb s
     return mat;
 }
 
+asp_material asp_dielectric(const asp_ndf *ndf, double eta, int thin, int transport, int mask)
+{
+    asp_material mat = start(&asp_bsdf_dielectric, ndf, mask, ASPI_FRESNEL_DIELECTRIC);
+    mat.transport = transport;
+    mat.c = grey(eta);
+    mat.a = grey(thin ? 1.0 : 0.0);
+    return mat;
+}
+
+asp_material asp_rough_diffuse(const asp_ndf *ndf, asp_rgb albedo, int mask)
+{
+    asp_material mat = start(&asp_bsdf_rough_diffuse, ndf, mask, ASPI_FRESNEL_ONE);
+    mat.a = albedo;
+    mat.b = grey(0.0);
+    return mat;
+}
+
+asp_material asp_plastic(const asp_ndf *ndf, asp_rgb albedo, double eta, int mask)
+{
+    asp_material mat = start(&asp_bsdf_plastic, ndf, mask, ASPI_FRESNEL_DIELECTRIC);
+    mat.a = albedo;
+    mat.c = grey(eta);
+    mat.model->prepare(&mat, NULL);
+    return mat;
+}
+
 static asp_status parse_metal(aspi_spec *spec, asp_material *out, const asp_metal **found,
                               asp_error *err)
 {

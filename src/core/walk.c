@@ -36,6 +36,7 @@
 #define power ASP_NAME(power)
 #define facing ASP_NAME(facing)
 #define fly ASP_NAME(fly)
+#define fly_surely ASP_NAME(fly_surely)
 #define leaves ASP_NAME(leaves)
 #define wall_normal ASP_NAME(wall_normal)
 #define next_normal ASP_NAME(next_normal)
@@ -122,6 +123,26 @@ ASP_FN int fly(walker *r, asp_real seen)
         return 0;
     r->q = r->q / p;
     return 1;
+}
+
+/* Flies to the next facet for certain and returns the probability that there is one. A ray that leads
+ * away seldom meets the few facets that face it, which then send much light: the product is small, and
+ * estimates that use it have a finite variance. */
+ASP_FN asp_real fly_surely(walker *r, asp_real seen)
+{
+    asp_real height = aspi_abs(r->d.z), rate, meets, l;
+    int deeper = r->inside ? r->d.z > R(0.0) : r->d.z < R(0.0);
+    if (deeper) {
+        fly(r, seen);
+        return R(1.0);
+    }
+    if (!(seen > ASP_SMALLEST))
+        return R(0.0);
+    rate = aspi_min(seen / aspi_max(height, ASP_SMALLEST), R(1e6));
+    meets = -aspi_expm1(rate * aspi_log(r->q));
+    l = aspi_log1p(-meets * uniform(r));
+    r->q = aspi_min(r->q * aspi_exp(aspi_min(-l / rate, R(80.0))), R(1.0));
+    return meets;
 }
 
 /* Probability that a ray from q along w, on the side it leaves by, meets nothing more. */
@@ -254,7 +275,7 @@ ASP_FN void add_scaled(asp_c3 *sum, asp_c3 a, asp_c3 b, asp_real by)
 }
 
 /* What goes to wo by way of one wall, arriving there in direction d on side `inside` and changed by
- * `by` at the wall: the flight there is played, the rest is expected. */
+ * `by` at the wall. */
 ASP_FN void by_wall(const walker *r, asp_v3 v, asp_real seen, asp_v3 d, int inside, asp_c3 by, asp_v3 wo,
                     asp_c3 *sum)
 {
@@ -271,8 +292,7 @@ ASP_FN void by_wall(const walker *r, asp_v3 v, asp_real seen, asp_v3 d, int insi
     if (inside != r->inside)
         side.q = R(1.0) - side.q;
     side.inside = inside;
-    if (!fly(&side, all))
-        return;
+    share *= fly_surely(&side, all);
     if (inside != out)
         side.q = R(1.0) - side.q;
     share *= leaves(k, wo, out, side.q);
@@ -318,16 +338,17 @@ ASP_FN void by_walls(const walker *r, asp_v3 v, asp_real seen, asp_v3 wo, asp_c3
     }
 }
 
-/* Adds what this meeting sends to wo: by the facet m if it is diffuse, else by all that face v, and by
+/* Adds what this meeting, whose probability is `meets`, sends to wo: by the facet m if it is diffuse, else by all that face v, and by
  * those and then a wall. `first`: nothing was met before, so that the way out is averaged
  * over heights: rate_i / (rate_i + rate_o) instead of q^rate_o. */
 ASP_FN void connect(const walker *r, asp_v3 v, asp_v3 m, asp_real seen, asp_v3 wo, int first,
-                    asp_c3 *sum)
+                    asp_real meets, asp_c3 *sum)
 {
     const asp_mat *mat = r->mat;
     const asp_shape *k = &mat->ndf;
     int out = wo.z < R(0.0);
     asp_real open;
+    walker now = *r;
     if (out && mat->model->facets != ASPI_FACETS_REFRACT)
         return;
     if (first && out == r->inside) {
@@ -336,13 +357,17 @@ ASP_FN void connect(const walker *r, asp_v3 v, asp_v3 m, asp_real seen, asp_v3 w
     } else {
         open = leaves(k, wo, out, out == r->inside ? r->q : R(1.0) - r->q);
     }
+    open *= meets;
     if (mat->model->facets == ASPI_FACETS_DIFFUSE) {
         asp_c3 by = mat->a;
         add_scaled(sum, r->carried, by, aspi_max(aspi_dot(m, wo), R(0.0)) * R(1.0 / ASP_PI) * open);
         return;
     }
     add_scaled(sum, r->carried, facet_sends(r, v, wo, out, seen), open);
-    by_walls(r, v, seen, wo, sum);
+    now.carried.r *= meets;
+    now.carried.g *= meets;
+    now.carried.b *= meets;
+    by_walls(&now, v, seen, wo, sum);
 }
 
 /* Roulette: walks go on with the probability of what they carry, so that none is cut short. */
@@ -406,11 +431,13 @@ asp_c3 ASPI_CALL(asp_walk_eval_cos)(const asp_mat *mat, asp_v3 wi, asp_v3 wo, as
         return sum;
     for (met = 0;; met++) {
         asp_v3 v = facing(r.d, r.inside), m;
-        asp_real seen = area(&mat->ndf, v);
-        if (!fly(&r, seen))
+        asp_real seen = area(&mat->ndf, v), meets = fly_surely(&r, seen);
+        if (meets <= R(0.0))
             break;
         m = next_normal(&r, v, seen, &wall);
-        connect(&r, v, m, seen, wo, met == 0, &sum);
+        connect(&r, v, m, seen, wo, met == 0, meets, &sum);
+        if (uniform(&r) >= meets)
+            break;
         scatter(&r, m);
         if (!survives(&r, met + 1))
             break;

@@ -1,0 +1,82 @@
+/* law_dielectric.c - laws of refraction over the distribution: both sides, both transports */
+#include "laws/laws.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Index, thin sheet or not; each tried with both transports. */
+static const struct { double eta; int thin; const char *name; } cases[] = {
+    { 1.5, 0, "dielectric 1.5" }, { 0.6, 0, "dielectric 0.6" }, { 1.5, 1, "sheet 1.5" }
+};
+#define CASES (sizeof cases / sizeof *cases)
+
+static asp_vec3 flip(asp_vec3 w)
+{
+    return (asp_vec3){ -w.x, -w.y, -w.z };
+}
+
+static asp_material make(const aspi_trial *t, size_t i, int transport, int mask)
+{
+    asp_material mat = asp_dielectric(t->ndf, cases[i].eta, cases[i].thin, transport, mask);
+    return mat;
+}
+
+/* Steps of rounding that a facet found from wi and wo carries: the half vector is what is left of two
+ * vectors of length 1 and eta. */
+static double steps_of(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double eta)
+{
+    double n = wi.z < 0 ? 1 / eta : eta;
+    double apart = wi.z * wo.z > 0 ? hypot(hypot(wi.x + wo.x, wi.y + wo.y), wi.z + wo.z)
+                                   : hypot(hypot(wi.x + n * wo.x, wi.y + n * wo.y), wi.z + n * wo.z);
+    double mz = fabs(wi.z * wo.z > 0 ? wi.z + wo.z : wi.z + n * wo.z) / apart;
+    double size = fabs(t->ndf->i00) + fabs(t->ndf->i01) + fabs(t->ndf->i10) + fabs(t->ndf->i11);
+    double slope = 1 / fmax(mz, 1e-12) + hypot(t->ndf->map.tx, t->ndf->map.ty);
+    return 1e-15 * (1 + n) / apart / fmax(mz, 1e-12)
+         * (1 / fmax(mz, 1e-12) + size * slope / t->scale * 40 + 1 / fabs(wo.z) + 1 / fabs(wi.z));
+}
+
+void aspi_law_refraction(aspi_trial *t)
+{
+    for (size_t i = 0; i < CASES; i++)
+        for (int k = 0; k < 300; k++) {
+            asp_material rad = make(t, i, ASP_RADIANCE, k % 3 == 2 ? ASP_MASK_UNCORRELATED : 0);
+            asp_material imp = make(t, i, ASP_IMPORTANCE, rad.mask);
+            const aspi_view *v = &t->views[(size_t)k % t->view_count];
+            asp_vec3 wi = k & 1 ? flip(v->w) : v->w;
+            asp_bsdf_sample s = asp_sample_lobe(&rad, wi, aspi_uniform(t), aspi_uniform(t), aspi_uniform(t));
+            double pdf = asp_pdf(&rad, wi, s.wo), steps, side, a, b;
+            if (!(s.weight.r > 0) || pdf < 1e-200)
+                continue;
+            steps = steps_of(t, wi, s.wo, cases[i].thin ? 1 : cases[i].eta);
+            if (steps > 1e-3)
+                continue;
+            a = asp_eval_cos(&rad, wi, s.wo).r;
+            aspi_find(t, fabs(s.weight.r * s.pdf - a) / fmax(a, 1e-200), 1e-11 + steps,
+                      "%s, %s: weight pdf %.15g, f cos %.15g", cases[i].name, v->name, s.weight.r * s.pdf, a);
+            aspi_find(t, fabs(s.pdf - pdf) / pdf, 1e-11 + steps, "%s, %s: density", cases[i].name, v->name);
+            /* f(wo, wi) = f(wi, wo) n_o^2/n_i^2, and importance goes the other way */
+            side = wi.z * s.wo.z > 0 || cases[i].thin ? 1 : wi.z > 0 ? cases[i].eta : 1 / cases[i].eta;
+            a = asp_eval(&rad, wi, s.wo).r;
+            b = asp_eval(&rad, s.wo, wi).r;
+            aspi_find(t, fabs(b - a * side * side) / fmax(b, 1e-200), 1e-12 + 2 * steps,
+                      "%s, %s: f(wo, wi) %.15g, f(wi, wo) n^2 %.15g", cases[i].name, v->name, b,
+                      a * side * side);
+            aspi_find(t, fabs(asp_eval(&imp, wi, s.wo).r - b) / fmax(b, 1e-200), 1e-12 + 2 * steps,
+                      "%s, %s: importance against radiance the other way", cases[i].name, v->name);
+            /* what one facet sends is at most all, in importance */
+            aspi_find(t, s.weight.r * (side * side) - 1, 1e-9 + t->ndf->model->area_error,
+                      "%s, %s: weight above 1", cases[i].name, v->name);
+        }
+}
+
+/* eta = 1 is not there; eta near 1 hardly. */
+void aspi_law_no_boundary(aspi_trial *t)
+{
+    asp_material none = asp_dielectric(t->ndf, 1, 0, ASP_RADIANCE, 0);
+    for (size_t i = 0; i < t->view_count; i++) {
+        asp_vec3 w = t->views[i].w;
+        asp_bsdf_sample s = asp_sample_lobe(&none, w, 0.3, 0.7, 0.5);
+        aspi_find(t, fabs(s.wo.x + w.x) + fabs(s.wo.y + w.y) + fabs(s.wo.z + w.z) + fabs(s.weight.r - 1), 0,
+                  "%s: bent or dimmed", t->views[i].name);
+    }
+}

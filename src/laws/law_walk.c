@@ -1,0 +1,119 @@
+/* law_walk.c - laws of multiple scattering over the distribution
+ *
+ * A walk between perfect mirrors, or through a dielectric without absorption, always ends with weight 1;
+ * what could be wrong is where it ends. So eval, which connects every facet met to wo, is integrated with
+ * directions that are not the walk's, and compared with 1 and, cell by cell, with where walks end. */
+#include "laws/laws.h"
+
+#include <math.h>
+
+#define CELLS 12      /* three bands of height on either side, two halves of azimuth */
+
+static double next(void *state) { return aspi_uniform(state); }
+
+static int cell_of(asp_vec3 w, asp_vec3 wi)
+{
+    int band = (int)(3 * fmin(fabs(w.z), 0.999999)), side = w.z < 0;
+    int half = w.x * wi.y - w.y * wi.x > 0;
+    return (side * 3 + band) * 2 + half;
+}
+
+/* Mean of samples with its standard error. */
+typedef struct mean { double sum, sum2; } mean;
+
+static void put(mean *m, double x)
+{
+    m->sum += x;
+    m->sum2 += x * x;
+}
+
+static double value(const mean *m, double n) { return m->sum / n; }
+
+static double error2(const mean *m, double n)
+{
+    double v = m->sum / n;
+    return fmax(m->sum2 / n - v * v, 0) / n;
+}
+
+/* Directions from half single scattering, half a cosine lobe on either side: density of both. */
+static asp_vec3 propose(aspi_trial *t, const asp_material *mat, asp_vec3 wi, int both, double *pdf)
+{
+    double u1 = aspi_uniform(t), u2 = aspi_uniform(t), z = sqrt(1 - u1);
+    asp_vec3 wo = { sqrt(u1) * cos(2 * ASPI_PI * u2), sqrt(u1) * sin(2 * ASPI_PI * u2), z };
+    if (aspi_uniform(t) < 0.5)
+        wo = asp_sample_lobe(mat, wi, u1, u2, aspi_uniform(t)).wo;
+    else if (both && aspi_uniform(t) < 0.5)
+        wo.z = -z;
+    *pdf = 0.5 * asp_pdf(mat, wi, wo) + (both || wo.z > 0 ? 0.5 : 0) * (both ? 0.5 : 1) * fabs(wo.z) / ASPI_PI;
+    return wo;
+}
+
+
+/* Distributions whose D has a pole at the horizon (Student's t below gamma = 2) give estimates of infinite
+ * variance: their walks are right, but no number of samples shows that eval is. */
+static int has_pole(const asp_ndf *ndf)
+{
+    for (int i = 0; i < 8; i++) {
+        double a = 2 * ASPI_PI * i / 8, z1 = 1e-3, z2 = 1e-6;
+        asp_vec3 m1 = { sqrt(1 - z1 * z1) * cos(a), sqrt(1 - z1 * z1) * sin(a), z1 };
+        asp_vec3 m2 = { sqrt(1 - z2 * z2) * cos(a), sqrt(1 - z2 * z2) * sin(a), z2 };
+        if (asp_D(ndf, m2) > 4 * asp_D(ndf, m1))
+            return 1;
+    }
+    return 0;
+}
+
+static void try_material(aspi_trial *t, const asp_material *mat, const asp_material *guide,
+                         const char *name, int both, size_t n)
+{
+    int compare = !has_pole(t->ndf) && !(both && t->skewed); /* a wall that refracts makes a Dirac peak */
+    for (size_t k = 0; k < t->view_count; k += 3) {
+        asp_vec3 wi = t->views[k].w;
+        mean total = { 0, 0 }, ends[CELLS] = { { 0, 0 } }, parts[CELLS] = { { 0, 0 } };
+        double z, worst = 0, se;
+        int at = 0;
+        for (size_t i = 0; i < n; i++) {
+            asp_bsdf_sample s = asp_walk_sample(mat, wi, next, t);
+            double pdf, x;
+            asp_vec3 wo;
+            aspi_find(t, fabs(s.weight.r - 1), 1e-12, "%s, %s: a walk carries %.15g", name, t->views[k].name,
+                      s.weight.r);
+            put(&ends[cell_of(s.wo, wi)], s.weight.r);
+            if (!compare)
+                continue;
+            wo = propose(t, guide, wi, both, &pdf);
+            x = pdf > 0 ? asp_walk_eval_cos(mat, wi, wo, next, t).r / pdf : 0;
+            put(&total, x);
+            put(&parts[cell_of(wo, wi)], x);
+        }
+        se = sqrt(error2(&total, (double)n));
+        if (compare)
+            aspi_find(t, fabs(value(&total, (double)n) - 1), 1e-3 + 4.5 * se, "%s, %s: furnace %.5f +- %.5f",
+                      name, t->views[k].name, value(&total, (double)n), se);
+        for (int c = 0; c < CELLS; c++) {
+            double a = value(&ends[c], (double)n), b = value(&parts[c], (double)n);
+            double s2 = error2(&ends[c], (double)n) + error2(&parts[c], (double)n);
+            if (!compare || a * (double)n < 50)
+                continue;
+            z = fabs(a - b) / sqrt(s2 + 1e-12);
+            if (z > worst)
+                worst = z, at = c;
+        }
+        aspi_find(t, worst, 5.5, "%s, %s: ends against eval, cell %d: %.5f, %.5f", name, t->views[k].name, at,
+                  value(&ends[at], (double)n), value(&parts[at], (double)n));
+        if (aspi_tick(t, (double)k / (double)t->view_count))
+            return;
+    }
+}
+
+void aspi_law_walk(aspi_trial *t)
+{
+    static const asp_rgb white = { 1, 1, 1 };
+    size_t n = t->samples / 20;
+    asp_material mirror = asp_mirror(t->ndf, ASP_MASK_WALL);
+    asp_material diffuse = asp_rough_diffuse(t->ndf, white, ASP_MASK_WALL);
+    asp_material glass = asp_dielectric(t->ndf, 1.5, 0, ASP_IMPORTANCE, ASP_MASK_WALL);
+    try_material(t, &mirror, &mirror, "mirror", 0, n);
+    try_material(t, &diffuse, &mirror, "diffuse", 0, n);
+    try_material(t, &glass, &glass, "dielectric", 1, n);
+}
