@@ -268,6 +268,8 @@ typedef struct asp_preview {
      * of the same roughness. */
     const asp_material *proposal;
 
+    int walk;                            /* 1: multiple scattering of the material (asperity.h 12) */
+
     const asp_environment *environment;  /* NULL: the studio */
     int      width, height;              /* [1, ASP_IMAGE_SIDE]; 0: 256 */
     int      samples;                    /* per pixel, [1, 65536]; 0: 64; powers of two are best */
@@ -284,7 +286,7 @@ typedef struct asp_preview {
 /* Renders into a new image (asp_image_free it); `out` is written on success only. The result depends
  * on the description alone, not on the number of threads. The estimate is unbiased: every sample
  * joins one direction of the surface's sampler and one towards a light by the balance heuristic
- * (Veach, Guibas 1995); numbers from a Sobol sequence with hashed Owen scrambling (Burley 2020).
+ * (Veach, Guibas 1995); light refracted into the sphere is followed until it leaves it; numbers from a Sobol sequence with hashed Owen scrambling (Burley 2020).
  * ASP_EINVAL (named value), ASP_ENOMEM, ASP_ECANCELLED when `progress` said so. */
 asp_status asp_preview_render(const asp_preview *preview, asp_image *out, asp_error *err);
 

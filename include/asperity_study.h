@@ -22,9 +22,6 @@ extern "C" {
  * numbers as they need, so no stratification survives; use them to test samplers. float64, the bits the
  * same everywhere. */
 
-/* The next uniform number, in [0, 1). */
-typedef double asp_uniforms(void *state);
-
 typedef enum asp_oracle_kind {
     ASP_ORACLE_STUDENT,   /* reflect and tail, in closed form: Student's t and all that are it (ggx,
                              ellipsoid, beckmann, phong, ...). At most 1.22 trials, 3.75 for views

@@ -73,6 +73,7 @@ static int run(const cmd_args *args)
     look.seed = (uint32_t)cmd_integer(args, "seed");
     look.threads = (int)cmd_integer(args, "threads");
     look.field_of_view = 0;
+    look.walk = cmd_given(args, "walk") > 0;
     if (status != CMD_OK)
         return status;
     if (cmd_given(args, "data")) {
@@ -99,6 +100,8 @@ static const cmd_option options[] = {
     { "material", 0, "SPEC", CMD_TEXT, .help = "the material" },
     { "ndf", 0, "SPEC", CMD_TEXT, .help = "or a distribution of perfect mirror facets" },
     { "mask", 0, "NAME", CMD_TEXT, .help = "masking, as in `asperity list`" },
+    { "walk", 0, NULL, CMD_FLAG,
+      .help = "multiple scattering between facets (conductor, dielectric, rough_diffuse)" },
     { "data", 0, "FILE", CMD_TEXT, .help = "or a measurement over a grid (merl, rgl); not one that lists geometries" },
     { "size", 0, "N", CMD_INTEGER, 1, 16384, .initial = "512", .help = "pixels along a side" },
     { "spp", 0, "N", CMD_INTEGER, 1, 65536, .initial = "64", .help = "samples per pixel" },

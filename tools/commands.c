@@ -3,7 +3,7 @@
 
 #define COMMANDS(row) \
     row(list) row(eval) row(sample) row(plot) row(figures) row(render) row(convert) row(convert_ndf) row(fabricate) \
-    row(fit) row(check)
+    row(fit) row(check) row(energy)
 
 #define DECLARE(name) extern const cmd_record cmd_##name;
 COMMANDS(DECLARE)

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "render/environment.h"
+#include "render/inside.h"
 #include "render/scatter.h"
 #include "render/sobol.h"
 
@@ -58,29 +59,6 @@ static int look(const camera *cam, double px, double py, asp_vec3 *n, asp_vec3 *
     return 1;
 }
 
-typedef struct frame { asp_vec3 x, y, z; } frame;
-
-/* x = dn/dphi of n = (sin theta sin phi, cos theta, sin theta cos phi). */
-static frame frame_at(asp_vec3 n)
-{
-    double s = sqrt(n.x * n.x + n.z * n.z);
-    asp_vec3 x = s > 1e-9 ? (asp_vec3){ n.z / s, 0, -n.x / s } : (asp_vec3){ 1, 0, 0 };
-    asp_vec3 y = { n.y * x.z - n.z * x.y, n.z * x.x - n.x * x.z, n.x * x.y - n.y * x.x };
-    return (frame){ x, y, n };
-}
-
-static asp_vec3 to_local(const frame *f, asp_vec3 w)
-{
-    return (asp_vec3){ aspi_dot(w, f->x), aspi_dot(w, f->y), aspi_dot(w, f->z) };
-}
-
-static asp_vec3 to_world(const frame *f, asp_vec3 w)
-{
-    return (asp_vec3){ w.x * f->x.x + w.y * f->y.x + w.z * f->z.x,
-                       w.x * f->x.y + w.y * f->y.y + w.z * f->z.y,
-                       w.x * f->x.z + w.y * f->y.z + w.z * f->z.z };
-}
-
 static void put(aspi_directions *d, size_t i, asp_vec3 w)
 {
     d->x[i] = w.x;
@@ -93,7 +71,7 @@ static void put(aspi_directions *d, size_t i, asp_vec3 w)
 /* What a block of samples of one pixel that hit the sphere needs to know. */
 typedef struct block {
     size_t          n;
-    frame           frame[ASPI_BLOCK];
+    aspi_frame      frame[ASPI_BLOCK];
     uint32_t        index[ASPI_BLOCK];
     double          chance[ASPI_BLOCK][ASP_LIGHTS];
     int             has_light[ASPI_BLOCK];
@@ -117,9 +95,17 @@ static void add_surface_samples(const job *job, block *b, uint32_t seed, asp_rgb
         aspi_sobol(b->index[i], seed, &b->u1[i], &b->u2[i]);
     aspi_scatter_sample(&job->scatter, b->n, &b->wi, b->u1, b->u2, &b->wo, b->pdf, &b->value);
     for (size_t i = 0; i < b->n; i++) {
+        asp_vec3 w = aspi_to_world(&b->frame[i], (asp_vec3){ b->wo.x[i], b->wo.y[i], b->wo.z[i] });
+        if (b->wo.z[i] < 0 && job->scatter.material) {
+            asp_rgb light = aspi_through(&job->scatter, &job->lights, b->frame[i].z, w,
+                                         (asp_rgb){ b->value.r[i], b->value.g[i], b->value.b[i] },
+                                         aspi_mix(seed, b->index[i]));
+            sum->r += light.r;
+            sum->g += light.g;
+            sum->b += light.b;
+        }
         if (b->pdf[i] == 0 || !(b->wo.z[i] > 0))
             continue;
-        asp_vec3 w = to_world(&b->frame[i], (asp_vec3){ b->wo.x[i], b->wo.y[i], b->wo.z[i] });
         double other = b->has_light[i] ? aspi_light_pdf(&job->lights, b->chance[i], w) : 0;
         add(sum, aspi_radiance(&job->lights, w), &b->value, i, 1 / (1 + other / b->pdf[i]));
     }
@@ -148,7 +134,7 @@ static void add_light_samples(const job *job, block *b, uint32_t seed, asp_rgb *
             size_t k = choose(b->chance[i], job->lights.count, which);
             w[i] = aspi_light_sample(&job->lights.light[k], u1, u2);
         }
-        put(&b->wo, i, to_local(&b->frame[i], w[i]));
+        put(&b->wo, i, aspi_to_local(&b->frame[i], w[i]));
     }
     aspi_scatter_eval(&job->scatter, b->n, &b->wi, &b->wo, b->pdf, &b->value);
     for (size_t i = 0; i < b->n; i++) {
@@ -188,8 +174,8 @@ static asp_rgb render_pixel(const job *job, block *b, int column, int row)
         }
         size_t i = b->n++;
         b->index[i] = (uint32_t)s;
-        b->frame[i] = frame_at(n);
-        put(&b->wi, i, to_local(&b->frame[i], view));
+        b->frame[i] = aspi_frame_at(n);
+        put(&b->wi, i, aspi_to_local(&b->frame[i], view));
         b->has_light[i] = aspi_light_chances(&job->lights, n, b->chance[i]) > 0;
         if (b->n == ASPI_BLOCK)
             add_block(job, b, seed, &sum);
@@ -303,11 +289,11 @@ asp_status asp_preview_render(const asp_preview *preview, asp_image *out, asp_er
     if (status != ASP_OK)
         return status;
     asp_environment studio = asp_environment_studio();
-    job job = { .scatter = { p->material, p->function, p->context, p->proposal },
+    job job = { .scatter = { p->material, p->function, p->context, p->proposal, p->walk },
                 .samples = p->samples ? p->samples : 64,
                 .plain = p->plain, .background = p->background, .seed = p->seed };
     if (p->material && p->proposal)
-        job.scatter = (aspi_scatter){ NULL, eval_material, p->material, p->proposal };
+        job.scatter = (aspi_scatter){ NULL, eval_material, p->material, p->proposal, 0 };
     status = aspi_lights_prepare(p->environment ? p->environment : &studio, &job.lights, err);
     if (status != ASP_OK)
         return status;

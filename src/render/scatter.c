@@ -1,7 +1,9 @@
 /* scatter.c - sampling what scatters: materials by themselves, functions by a mixture */
 #include "render/scatter.h"
+#include "core/rng.h"
 
 #include <math.h>
+#include <string.h>
 
 #define PI 3.14159265358979323846
 
@@ -74,6 +76,54 @@ static asp_vec3 mixture_sample(const aspi_scatter *scatter, asp_vec3 wi, double 
     return sample_lobe(exponents[k], wi, fmin(LOBES * u1 - k, 1 - 0x1p-53), u2);
 }
 
+/* ------------------------------------------------------------------ walks */
+
+double aspi_stream_next(void *stream)
+{
+    aspi_stream *s = stream;
+    return aspi_unit64(aspi_random_at(s->start, s->next++));
+}
+
+/* A stream made of two numbers, so that a picture depends on its description alone. */
+static aspi_stream stream_of(double a, double b)
+{
+    uint64_t x, y;
+    memcpy(&x, &a, sizeof x);
+    memcpy(&y, &b, sizeof y);
+    return (aspi_stream){ aspi_random_start(x, y), 0 };
+}
+
+static void eval_walk(const aspi_scatter *scatter, size_t n, const aspi_directions *wi,
+                      const aspi_directions *wo, double *pdf, aspi_colours *value)
+{
+    for (size_t i = 0; i < n; i++) {
+        asp_vec3 in = get(wi, i), out = get(wo, i);
+        aspi_stream s = stream_of(in.x + out.y, in.y - out.x + out.z);
+        asp_rgb f = asp_walk_eval_cos(scatter->material, in, out, aspi_stream_next, &s);
+        pdf[i] = asp_walk_pdf(scatter->material, in, out);
+        value->r[i] = f.r;
+        value->g[i] = f.g;
+        value->b[i] = f.b;
+    }
+}
+
+/* The weights of the two ways to sample come from asp_walk_pdf on both sides, so that they sum to 1. */
+static void sample_walk(const aspi_scatter *scatter, size_t n, const aspi_directions *wi, const double *u1,
+                        const double *u2, aspi_directions *wo, double *pdf, aspi_colours *weight)
+{
+    for (size_t i = 0; i < n; i++) {
+        aspi_stream stream = stream_of(u1[i], u2[i]);
+        asp_bsdf_sample s = asp_walk_sample(scatter->material, get(wi, i), aspi_stream_next, &stream);
+        wo->x[i] = s.wo.x;
+        wo->y[i] = s.wo.y;
+        wo->z[i] = s.wo.z;
+        pdf[i] = s.pdf;
+        weight->r[i] = s.weight.r;
+        weight->g[i] = s.weight.g;
+        weight->b[i] = s.weight.b;
+    }
+}
+
 /* ------------------------------------------------------------------ blocks */
 
 static void eval_function(const aspi_scatter *scatter, size_t n, const aspi_directions *wi,
@@ -98,6 +148,10 @@ void aspi_scatter_eval(const aspi_scatter *scatter, size_t n, const aspi_directi
         eval_function(scatter, n, wi, wo, pdf, value);
         return;
     }
+    if (scatter->walk) {
+        eval_walk(scatter, n, wi, wo, pdf, value);
+        return;
+    }
     asp_eval_cos_n(scatter->material, n, read_directions(wi), read_directions(wo),
                    (asp_rgbs){ value->r, value->g, value->b });
     asp_pdf_n(scatter->material, n, read_directions(wi), read_directions(wo), pdf);
@@ -107,6 +161,10 @@ void aspi_scatter_sample(const aspi_scatter *scatter, size_t n, const aspi_direc
                          const double *u1, const double *u2, aspi_directions *wo, double *pdf,
                          aspi_colours *weight)
 {
+    if (scatter->material && scatter->walk) {
+        sample_walk(scatter, n, wi, u1, u2, wo, pdf, weight);
+        return;
+    }
     if (scatter->material) {
         asp_sample_n(scatter->material, n, read_directions(wi), u1, u2,
                      (asp_vec3s){ wo->x, wo->y, wo->z }, pdf,

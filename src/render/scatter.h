@@ -11,7 +11,12 @@ typedef struct aspi_scatter {
     asp_brdf_function  *function;
     const void         *context;
     const asp_material *proposal;        /* may be NULL */
+    int                 walk;            /* 1: multiple scattering of the material */
 } aspi_scatter;
+
+/* A stream of uniform numbers (core/rng.h). */
+typedef struct aspi_stream { uint64_t start, next; } aspi_stream;
+double aspi_stream_next(void *stream);
 
 /* Arrays of one block: directions in, or out of, the surface's frame. */
 typedef struct aspi_directions { double x[ASPI_BLOCK], y[ASPI_BLOCK], z[ASPI_BLOCK]; } aspi_directions;
