@@ -1,7 +1,8 @@
 /* cmd_energy.c - how much light surfaces give back: albedos over angle and over a parameter
  *
  * The albedo of a direction is the mean weight of its samples. They are taken on a lattice of (u1, u2)
- * (Roberts' R2 sequence) shifted eight times: the spread of the eight is the error. */
+ * and, for light from everywhere, of directions (Roberts' R4 sequence) shifted eight times: the spread of the
+ * eight is the error. */
 #include "cmd.h"
 #include "asperity_ndf.h"
 #include "core/rng.h"
@@ -18,11 +19,12 @@ typedef struct albedo { double r, g, b, error; } albedo;
 
 static double fraction(double x) { return x - floor(x); }
 
-/* Number i of shift k of the lattice. */
-static void lattice(size_t i, int k, double *u1, double *u2)
+/* Dimension d of point i under shift k: powers of 1/g, g^5 = g + 1. */
+static double lattice(size_t i, int k, int d)
 {
-    *u1 = fmin(fraction(0.5 + k * 0.37037 + 0.7548776662466927 * (double)i), 1 - 0x1p-53);
-    *u2 = fmin(fraction(0.5 + k * 0.61803 + 0.5698402909980532 * (double)i), 1 - 0x1p-53);
+    static const double step[4] = { 0.8566748838545029, 0.733891856627126,
+                                    0.6287067210378086, 0.53859725722361 };
+    return fmin(fraction(0.5 + k * fraction(0.37037 * (d + 1)) + step[d] * (double)i), 1 - 0x1p-53);
 }
 
 typedef struct stream { uint64_t start, next; } stream;
@@ -47,11 +49,10 @@ static albedo albedo_of(const asp_material *mat, double theta, double phi, size_
     for (int k = 0; k < SHIFTS; k++) {
         memset(sum[k], 0, sizeof sum[k]);
         for (size_t i = 0; i < n; i++) {
-            double u1, u2, c = cos(theta), a = phi;
-            lattice(i, k, &u1, &u2);
+            double u1 = lattice(i, k, 0), u2 = lattice(i, k, 1), c = cos(theta), a = phi;
             if (theta < 0) { /* cosine-weighted, by two more dimensions of the sequence */
-                c = sqrt(1 - fraction(0.5 + k * 0.21 + 0.4301597090019468 * (double)i));
-                a = 2 * PI * fraction(0.5 + k * 0.83 + 0.3247179572447460 * (double)i);
+                c = sqrt(1 - lattice(i, k, 2));
+                a = 2 * PI * lattice(i, k, 3);
             }
             double s = sqrt(fmax(0, 1 - c * c));
             asp_rgb w = weight_of(mat, (asp_vec3){ s * cos(a), s * sin(a), c }, u1, u2, walk, &random);

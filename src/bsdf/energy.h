@@ -12,11 +12,12 @@
 enum {
     ENERGY_TABLE = 0,
     ENERGY_MEAN = ENERGY_ROWS * ENERGY_COLUMNS,      /* mean of E, cosine-weighted */
-    ENERGY_COUNT,                                    /* columns in use */
+    ENERGY_COUNT,                                    /* columns in use, */
+    ENERGY_TURNS,                                    /* and how often they repeat round the surface */
     ENERGY_FILM,                                     /* a film's colour over the cosine */
     ENERGY_END = ENERGY_FILM + 3 * ENERGY_FILM_NODES
 };
-#if ENERGY_ROWS * ENERGY_COLUMNS + 2 + 3 * ENERGY_FILM_NODES > ASP_ENERGY_NUMBERS
+#if ENERGY_ROWS * ENERGY_COLUMNS + 3 + 3 * ENERGY_FILM_NODES > ASP_ENERGY_NUMBERS
 #error "asp_material.energy is too small"
 #endif
 

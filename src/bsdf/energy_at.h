@@ -40,16 +40,20 @@ ASP_FN asp_real aspi_energy_at(const asp_real *energy, asp_v3 w)
     if (columns == 1) {
         E = aspi_energy_row(energy, x);
     } else {
-        asp_real turn = aspi_atan(w.y, w.x) * R(0.5 / ASP_PI), y, d;
-        int j, next;
+        asp_real turn = aspi_atan(w.y, w.x) * R(0.5 / ASP_PI) * energy[ENERGY_TURNS], y, d, weight[4];
+        int j, k;
+        turn = turn - R((int)turn);
         turn = turn < R(0.0) ? turn + R(1.0) : turn;
         y = turn * R(columns);
         j = (int)y;
         d = y - R(j);
-        j = j % columns;
-        next = (j + 1) % columns;
-        E = (R(1.0) - d) * aspi_energy_row(energy + j * ENERGY_ROWS, x)
-          + d * aspi_energy_row(energy + next * ENERGY_ROWS, x);
+        weight[0] = R(-1.0 / 6.0) * d * (d - R(1.0)) * (d - R(2.0));
+        weight[1] = R(0.5) * (d + R(1.0)) * (d - R(1.0)) * (d - R(2.0));
+        weight[2] = R(-0.5) * (d + R(1.0)) * d * (d - R(2.0));
+        weight[3] = R(1.0 / 6.0) * (d + R(1.0)) * d * (d - R(1.0));
+        E = R(0.0);
+        for (k = 0; k < 4; k++)
+            E = E + weight[k] * aspi_energy_row(energy + (j + k + columns - 1) % columns * ENERGY_ROWS, x);
     }
     return aspi_min(aspi_max(E, R(0.0)), R(1.0));
 }

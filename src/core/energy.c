@@ -41,12 +41,13 @@ static double albedo_of(const asp_material *lobe, asp_vec3 wi, size_t nodes, siz
     return sum / (double)nodes;
 }
 
-/* Does the surface look the same from all azimuths? */
-static int is_round(const asp_map *m)
+/* Does the surface look the same from all azimuths? Data of the caller's need not. */
+static int is_round(const asp_ndf *ndf)
 {
+    const asp_map *m = &ndf->map;
     double a = m->m00 * m->m00 + m->m01 * m->m01, c = m->m10 * m->m10 + m->m11 * m->m11;
     double b = m->m00 * m->m10 + m->m01 * m->m11;
-    return m->tx == 0.0 && m->ty == 0.0 && aspi_abs(a - c) <= 1e-12 * (a + c)
+    return !ndf->data && m->tx == 0.0 && m->ty == 0.0 && aspi_abs(a - c) <= 1e-12 * (a + c)
         && aspi_abs(b) <= 1e-12 * (a + c);
 }
 
@@ -65,7 +66,9 @@ static double column_mean(const double *e)
 void aspi_energy_prepare(asp_material *out)
 {
     asp_material lobe = asp_mirror(&out->ndf, out->mask);
-    int columns = is_round(&out->ndf.map) ? 1 : ENERGY_COLUMNS, i, j;
+    int columns = is_round(&out->ndf) ? 1 : ENERGY_COLUMNS, i, j;
+    /* without a mean slope half a turn is as good as none */
+    int turns = out->ndf.map.tx == 0.0 && out->ndf.map.ty == 0.0 && !out->ndf.data ? 2 : 1;
     double mean = 0.0;
     lobe.fresnel = out->fresnel;
     lobe.c = out->c;
@@ -73,7 +76,7 @@ void aspi_energy_prepare(asp_material *out)
     memcpy(lobe.energy + ENERGY_FILM, out->energy + ENERGY_FILM, 3 * ENERGY_FILM_NODES * sizeof(double));
     for (j = 0; j < columns; j++) {
         double *e = out->energy + j * ENERGY_ROWS;
-        asp_vec2 at = aspi_sincos2pi((double)j / columns);
+        asp_vec2 at = aspi_sincos2pi((double)j / (columns * turns));
         for (i = 0; i < ENERGY_ROWS; i++) {
             double t = aspi_max((double)i / (ENERGY_ROWS - 1), 1e-3), c = t * t;
             double s = aspi_sqrt(1.0 - c * c);
@@ -88,4 +91,5 @@ void aspi_energy_prepare(asp_material *out)
     }
     out->energy[ENERGY_MEAN] = mean;
     out->energy[ENERGY_COUNT] = columns;
+    out->energy[ENERGY_TURNS] = turns;
 }

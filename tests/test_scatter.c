@@ -1,0 +1,340 @@
+/* test_scatter.c - scattering models beyond the conductor: energy, limits, films, indices, samplers */
+#include "asperity.h"
+
+#include <complex.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+static int passed, failed;
+
+static void expect(int ok, const char *what, double worst)
+{
+    printf("%s %s: %.3g\n", ok ? "ok    " : "FAILED", what, worst);
+    passed += ok != 0;
+    failed += ok == 0;
+}
+
+static double next(void *state)
+{
+    uint64_t *s = state, z;
+    *s += 0x9E3779B97F4A7C15u;
+    z = *s;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+static asp_vec3 direction(double theta, double phi)
+{
+    return (asp_vec3){ sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta) };
+}
+
+static asp_material material(const char *spec)
+{
+    asp_material mat;
+    asp_error err;
+    if (asp_material_parse(NULL, spec, &mat, &err) != ASP_OK) {
+        printf("FAILED %s: %s %s\n", spec, err.name, err.reason);
+        failed++;
+        memset(&mat, 0, sizeof mat);
+    }
+    return mat;
+}
+
+static asp_ndf ndf(const char *spec)
+{
+    asp_ndf k;
+    if (asp_ndf_parse(NULL, spec, &k, NULL) != ASP_OK) {
+        printf("FAILED %s\n", spec);
+        failed++;
+    }
+    return k;
+}
+
+/* Mean weight over a lattice of (u1, u2, u3). */
+static double albedo(const asp_material *mat, asp_vec3 wi, int n)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        double a = fmod(0.5 + 0.8191725133961645 * i, 1), b = fmod(0.5 + 0.6710436067037893 * i, 1);
+        sum += asp_sample_lobe(mat, wi, a, b, fmod(0.5 + 0.5497004779019703 * i, 1)).weight.g;
+    }
+    return sum / n;
+}
+
+/* ---- energy given back */
+
+static void check_energy(void)
+{
+    static const char *const whole[] = {
+        "plastic:albedo=1,ndf=(ggx:alpha=0.3)", "plastic:albedo=1,eta=1.8,ndf=(beckmann:alpha=1)",
+        "plastic:albedo=1,ndf=(student_t:alpha_x=0.2,alpha_y=0.5,gamma=2.5,mean_x=0.3),mask=wall",
+        "compensated:ndf=(ggx:alpha=0.8)", "compensated:ndf=(beckmann:alpha_x=0.3,alpha_y=0.9,rotation=0.4)",
+        "compensated:form=turquin,f0=1,ndf=(student_t:alpha=0.6,gamma=3)"
+    };
+    double worst = 0, lost = 0;
+    for (size_t i = 0; i < sizeof whole / sizeof *whole; i++) {
+        asp_material mat = material(whole[i]);
+        double off = 0;
+        for (int k = 0; k < 6; k++)
+            off = fmax(off, fabs(albedo(&mat, direction(0.02 + 0.29 * k, 0.4 + k), 20000) - 1));
+        printf("  %s: off by %.4f\n", whole[i], off);
+        worst = fmax(worst, off);
+    }
+    expect(worst < 0.012, "plastic and compensated conductors without absorption return all light", worst);
+    /* with absorption, less; and never more */
+    for (int k = 0; k < 6; k++) {
+        asp_material mat = material("plastic:albedo=0.6,ndf=(ggx:alpha=0.3)");
+        lost = fmax(lost, albedo(&mat, direction(0.02 + 0.29 * k, 0), 4000));
+    }
+    expect(lost < 0.95, "plastic over a grey base absorbs", lost);
+}
+
+/* ---- limits */
+
+static void check_limits(void)
+{
+    double worst = 0, smooth, apart = 0;
+    /* alpha -> 0 joins the smooth boundary: the share reflected is Fresnel's */
+    for (int side = 0; side < 2; side++)
+        for (int k = 0; k < 5; k++) {
+            asp_ndf flat = ndf("beckmann:alpha=0.0001");
+            asp_material glass = asp_dielectric(&flat, 1.5, 0, ASP_IMPORTANCE, 0);
+            asp_vec3 wi = direction(0.1 + 0.3 * k, 1);
+            double up = 0;
+            int n = 4000;
+            if (side)
+                wi.z = -wi.z;
+            for (int i = 0; i < n; i++) {
+                double u3 = (i + 0.5) / n;
+                asp_bsdf_sample s = asp_sample_lobe(&glass, wi, fmod(0.618034 * i, 1), fmod(0.41421 * i, 1), u3);
+                up += (s.wo.z * wi.z > 0) / (double)n;
+            }
+            smooth = asp_fresnel_dielectric(fabs(wi.z), side ? 1 / 1.5 : 1.5);
+            worst = fmax(worst, fabs(up - smooth));
+        }
+    expect(worst < 2e-3, "a nearly flat dielectric reflects Fresnel's share", worst);
+    worst = 0;
+    for (int k = 0; k < 8; k++) {
+        /* gamma -> infinity joins Beckmann, in refraction too */
+        asp_ndf a = ndf("student_t:alpha=0.4,gamma=1e9"), b = ndf("beckmann:alpha=0.4");
+        asp_material ma = asp_dielectric(&a, 1.5, 0, 0, 0), mb = asp_dielectric(&b, 1.5, 0, 0, 0);
+        asp_vec3 wi = direction(0.1 + 0.17 * k, 0.3), wo = direction(2.3 + 0.1 * k, 3);
+        double x = asp_eval(&ma, wi, wo).r, y = asp_eval(&mb, wi, wo).r;
+        worst = fmax(worst, fabs(x - y) / fmax(y, 1e-3));
+        /* eta -> 1 vanishes: what is reflected goes with (eta - 1)^2 */
+        mb = asp_dielectric(&b, 1 + 1e-4, 0, 0, 0);
+        apart = fmax(apart, asp_eval_cos(&mb, wi, direction(0.5, 3)).r);
+    }
+    expect(worst < 1e-6, "Student's t with gamma 1e9 refracts like Beckmann", worst);
+    expect(apart < 1e-6, "index 1.0001 hardly reflects", apart);
+}
+
+/* ---- the walk against single scattering */
+
+static void check_walk(void)
+{
+    asp_ndf k = ndf("ggx:alpha=0.7");
+    asp_material mirror = asp_mirror(&k, 0);
+    asp_vec3 wi = direction(0.9, 0.2), wo = direction(0.7, 2.5);
+    uint64_t state = 1;
+    double sum[2] = { 0, 0 }, sum2[2] = { 0, 0 }, z;
+    int n = 200000;
+    for (int i = 0; i < n; i++)
+        for (int way = 0; way < 2; way++) {
+            double f = way ? asp_walk_eval_cos(&mirror, wo, wi, next, &state).r / wi.z
+                           : asp_walk_eval_cos(&mirror, wi, wo, next, &state).r / wo.z;
+            sum[way] += f / n;
+            sum2[way] += f * f / n;
+        }
+    z = fabs(sum[0] - sum[1]) / sqrt((sum2[0] - sum[0] * sum[0] + sum2[1] - sum[1] * sum[1]) / n);
+    expect(z < 4, "walks are reciprocal, standard errors apart", z);
+    z = sum[0] / asp_eval(&mirror, wi, wo).r;
+    expect(z > 1.01 && z < 3, "multiple scattering adds light to single scattering, factor", z);
+    /* a metal of F = 1/2: the walk returns less than single scattering of a mirror plus its rest */
+    {
+        asp_material half = material("conductor:f0=0.5,tint=1,ndf=(ggx:alpha=0.7)");
+        double w = 0;
+        for (int i = 0; i < 20000; i++)
+            w += asp_walk_sample(&half, wi, next, &state).weight.r / 20000;
+        expect(w > albedo(&half, wi, 4000) && w < 1, "a half mirror: above single scattering, below 1", w);
+    }
+    {
+        asp_ndff kf = asp_ndf_narrow(&k);
+        asp_material d = asp_mirror(&k, 0);
+        asp_materialf f = asp_material_narrow(&d);
+        double lost = 0;
+        (void)kf;
+        for (int i = 0; i < 20000; i++) {
+            asp_bsdf_samplef s = asp_walk_samplef(&f, (asp_vec3f){ 0.6f, 0, 0.8f }, next, &state);
+            lost = fmax(lost, fabs(s.weight.r - 1));
+        }
+        expect(lost < 1e-6, "float32 walks lose nothing", lost);
+    }
+}
+
+/* ---- bounded visible normals */
+
+static void check_bounded(void)
+{
+    static const char *const specs[] = { "ggx:alpha=0.2", "ggx:alpha=0.8", "ggx:alpha_x=0.3,alpha_y=0.9,rotation=0.7" };
+    double worst = 0, gain = 1e9, apart = 0;
+    for (int i = 0; i < 3; i++)
+        for (int t = 0; t < 3; t++) {
+            asp_ndf k = ndf(specs[i]);
+            asp_material m = asp_mirror(&k, 0);
+            asp_vec3 wi = direction(0.1 + 0.6 * t, 1);
+            double mean[2] = { 0, 0 }, square[2] = { 0, 0 };
+            int n = 40000;
+            for (int j = 0; j < n; j++) {
+                double u1 = fmod(0.5 + 0.7548776662466927 * j, 1), u2 = fmod(0.5 + 0.5698402909980532 * j, 1);
+                for (int b = 0; b < 2; b++) {
+                    asp_bsdf_sample s = b ? asp_sample_bounded(&m, wi, u1, u2) : asp_sample(&m, wi, u1, u2);
+                    mean[b] += s.weight.r / n;
+                    square[b] += s.weight.r * s.weight.r / n;
+                    if (b && s.pdf > 0)
+                        worst = fmax(worst, fabs(asp_pdf_bounded(&m, wi, s.wo) / s.pdf - 1));
+                }
+            }
+            apart = fmax(apart, fabs(mean[0] - mean[1]));
+            gain = fmin(gain, (square[0] - mean[0] * mean[0]) / (square[1] - mean[1] * mean[1]));
+        }
+    expect(worst < 1e-12, "bounded sampling: the density of the sample is asp_pdf_bounded", worst);
+    expect(apart < 2e-3, "bounded and plain sampling agree in the mean", apart);
+    expect(gain > 1.05, "bounded sampling has less variance everywhere, factor at least", gain);
+}
+
+/* ---- films, indices */
+
+static double film_by_amplitudes(double c, double n1, double d, double complex n2, double nm)
+{
+    double complex c1 = csqrt(1 - (1 - c * c) / (n1 * n1)), c2 = csqrt(1 - (1 - c * c) / (n2 * n2));
+    double complex s1 = (c - n1 * c1) / (c + n1 * c1), s2 = (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2);
+    double complex p1 = (n1 * c - c1) / (n1 * c + c1), p2 = (n2 * c1 - n1 * c2) / (n2 * c1 + n1 * c2);
+    double complex e = cexp(4 * PI * I * n1 * c1 * d / nm);
+    double a = cabs((s1 + s2 * e) / (1 + s1 * s2 * e)), b = cabs((p1 + p2 * e) / (1 + p1 * p2 * e));
+    return 0.5 * (a * a + b * b);
+}
+
+static double white(const void *context, double nm)
+{
+    (void)nm;
+    return *(const double *)context;
+}
+
+static void check_spectrum(void)
+{
+    double worst = 0, back = 0, one = 0.37;
+    size_t count;
+    const asp_metal *metals = asp_metals(&count);
+    asp_error err;
+    for (double c = 0.01; c <= 1; c += 0.06)
+        for (double n1 = 1; n1 < 3; n1 += 0.37)
+            for (double d = 0; d < 1500; d += 130)
+                for (double n2 = 0.2; n2 < 4; n2 += 0.9)
+                    for (double k = 0.01; k < 5; k += 1.3)
+                        worst = fmax(worst, fabs(asp_fresnel_film(c, n1, d, n2, k, 550)
+                                                 - film_by_amplitudes(c, n1, d, n2 + I * k, 550)));
+    expect(worst < 1e-12, "thin films against complex amplitudes", worst);
+    worst = fabs(asp_fresnel_film(0.4, 1.5, 0, 0.2, 3, 550) - asp_fresnel_conductor(0.4, 0.2, 3));
+    expect(worst < 1e-14, "a film of no thickness is not there", worst);
+    for (size_t i = 0; i < count; i++) {
+        double eta, k, f0, tint, eta2, k2;
+        if (asp_metal_index(&metals[i], 555, &eta, &k, &err) != ASP_OK)
+            back = 1;
+        asp_f82_of_index(eta, k, &f0, &tint);
+        if (asp_index_of_f82(f0, tint, &eta2, &k2, &err) != ASP_OK)
+            back = 1;
+        back = fmax(back, fmax(fabs(eta2 / eta - 1), fabs(k2 / k - 1)));
+    }
+    expect(back < 1e-9, "n, k -> F82-tint -> n, k for every metal at 555 nm", back);
+    expect(asp_index_of_f82(0.5, 0.1, &worst, &back, &err) == ASP_EINVAL && strcmp(err.name, "tint") == 0
+               && err.high > err.low, "an impossible tint is refused with its range", err.low);
+    expect(asp_metal_index(&metals[0], 1000, &worst, &back, &err) == ASP_EINVAL, "1000 nm is refused", err.high);
+    {
+        asp_rgb grey = asp_rgb_of_reflectance(white, &one);
+        worst = fmax(fabs(grey.r - one), fmax(fabs(grey.g - one), fabs(grey.b - one)));
+        expect(worst < 1e-5, "an even reflectance is grey", worst);
+    }
+    {
+        /* by wavelength and by channel: the same when the numbers are */
+        asp_material mat = material("conductor:eta=0.2/0.9/1.5,k=3.9/2.4/1.9,ndf=(ggx:alpha=0.3)");
+        const double eta[3] = { 0.2, 0.9, 1.5 }, k[3] = { 3.9, 2.4, 1.9 };
+        double f[3];
+        asp_vec3 wi = direction(0.5, 0.1), wo = direction(0.9, 3);
+        asp_rgb rgb = asp_eval(&mat, wi, wo);
+        asp_eval_spectrum(&mat, wi, wo, 3, eta, k, f);
+        worst = fmax(fabs(f[0] - rgb.r), fmax(fabs(f[1] - rgb.g), fabs(f[2] - rgb.b)));
+        expect(worst < 1e-14, "three wavelengths are the three channels", worst);
+    }
+}
+
+/* ---- Lambertian facets */
+
+static void check_diffuse(void)
+{
+    asp_material exact = material("rough_diffuse:albedo=1,ndf=(beckmann:alpha=0.001)");
+    asp_ndf k = ndf("ggx:alpha_x=0.6,alpha_y=0.3,mean_x=0.2");
+    asp_material rough = asp_rough_diffuse(&k, (asp_rgb){ 1, 1, 1 }, ASP_MASK_WALL);
+    asp_vec3 wi = direction(0.8, 0.2), wo = direction(1.1, 2.5);
+    double worst = 0, brute = 0, sum;
+    int n = 400;
+    for (int i = 0; i < 6; i++)
+        worst = fmax(worst, fabs(asp_eval(&exact, direction(0.2 * i, 1), direction(0.25 * i, 2)).r * PI - 1));
+    expect(worst < 2e-3, "Lambertian facets on a flat surface are Lambert's law", worst);
+    /* the integral of max(0, wi.m) max(0, wo.m) D by brute force over slopes r = tan a, in polar form */
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            double a = (i + 0.5) / n * (PI / 2), phi = (j + 0.5) / n * 2 * PI, r = tan(a);
+            double x = r * cos(phi), y = r * sin(phi), c = 1 / sqrt(1 + r * r);
+            double ci = fmax(0, wi.z - wi.x * x - wi.y * y) * c, co = fmax(0, wo.z - wo.x * x - wo.y * y) * c;
+            brute += asp_P22(&k, x, y) / c * ci * co * r / (cos(a) * cos(a)) * (PI / 2 / n) * (2 * PI / n);
+        }
+    sum = asp_eval(&rough, wi, wo).r * PI;
+    {
+        double si = asp_sigma(&k, wi) + 0.2 * fmax(0, wi.x), so = asp_sigma(&k, wo) + 0.2 * fmax(0, wo.x);
+        brute /= si * wo.z + so * wi.z - wi.z * wo.z;
+    }
+    worst = fabs(sum / brute - 1);
+    expect(worst < 3e-3, "Lambertian facets against brute force", worst);
+    worst = fabs(asp_eval(&rough, wi, wo).r / asp_eval(&rough, wo, wi).r - 1);
+    expect(worst < 1e-14, "and reciprocal", worst);
+}
+
+static void check_refusals(void)
+{
+    static const char *const bad[] = {
+        "dielectric:eta=0,ndf=(ggx)", "dielectric:eta=nan,ndf=(ggx)", "dielectric:thin=2,ndf=(ggx)",
+        "dielectric:transport=light,ndf=(ggx)", "plastic:eta=1,ndf=(ggx)", "plastic:albedo=1.1,ndf=(ggx)",
+        "rough_diffuse:form=lambert,ndf=(ggx)", "compensated:form=none,ndf=(ggx)",
+        "conductor:metal=Au,film=-1,ndf=(ggx)", "conductor:metal=Au,film_eta=1.5,ndf=(ggx)",
+        "conductor:f0=0.5,film=100,ndf=(ggx)"
+    };
+    int refused = 0, n = (int)(sizeof bad / sizeof *bad);
+    for (int i = 0; i < n; i++) {
+        asp_material mat;
+        asp_error err;
+        int s = asp_material_parse(NULL, bad[i], &mat, &err) != ASP_OK && err.name[0] && err.position >= 0;
+        if (!s)
+            printf("accepted, or refused without a position: %s\n", bad[i]);
+        refused += s;
+    }
+    expect(refused == n, "bad numbers and names are refused with their place", refused);
+}
+
+int main(void)
+{
+    check_energy();
+    check_limits();
+    check_walk();
+    check_bounded();
+    check_spectrum();
+    check_diffuse();
+    check_refusals();
+    printf("%d passed, %d failed\n", passed, failed);
+    return failed != 0;
+}
