@@ -35,19 +35,31 @@ static double error2(const mean *m, double n)
     return fmax(m->sum2 / n - v * v, 0) / n;
 }
 
-/* Directions from half single scattering, half a cosine lobe on either side: density of both. */
-static asp_vec3 propose(aspi_trial *t, const asp_material *mat, asp_vec3 wi, int both, double *pdf)
+/* The mirror image in the walls that close a skewed surface. */
+static asp_vec3 in_wall(const aspi_trial *t, asp_vec3 w)
 {
-    double u1 = aspi_uniform(t), u2 = aspi_uniform(t), z = sqrt(1 - u1);
-    asp_vec3 wo = { sqrt(u1) * cos(2 * ASPI_PI * u2), sqrt(u1) * sin(2 * ASPI_PI * u2), z };
-    if (aspi_uniform(t) < 0.5)
-        wo = asp_sample_lobe(mat, wi, u1, u2, aspi_uniform(t)).wo;
-    else if (both && aspi_uniform(t) < 0.5)
-        wo.z = -z;
-    *pdf = 0.5 * asp_pdf(mat, wi, wo) + (both || wo.z > 0 ? 0.5 : 0) * (both ? 0.5 : 1) * fabs(wo.z) / ASPI_PI;
-    return wo;
+    double x = t->ndf->map.tx, y = t->ndf->map.ty, along = 2 * (w.x * x + w.y * y) / fmax(x * x + y * y, 1e-300);
+    return (asp_vec3){ w.x - along * x, w.y - along * y, w.z };
 }
 
+/* Directions from half single scattering, half a cosine lobe on either side: density of both. On a skewed
+ * surface a wall may come before or after the facet, which on a smooth one makes lobes elsewhere. */
+static asp_vec3 propose(aspi_trial *t, const asp_material *mat, asp_vec3 wi, int both, double *pdf)
+{
+    double u1 = aspi_uniform(t), u2 = aspi_uniform(t), z = sqrt(1 - u1), lobes = 0;
+    asp_vec3 wo = { sqrt(u1) * cos(2 * ASPI_PI * u2), sqrt(u1) * sin(2 * ASPI_PI * u2), z };
+    int ways = t->skewed ? 4 : 1, way = (int)(aspi_uniform(t) * ways);
+    if (aspi_uniform(t) < 0.5) {
+        wo = asp_sample_lobe(mat, way & 1 ? in_wall(t, wi) : wi, u1, u2, aspi_uniform(t)).wo;
+        wo = way & 2 ? in_wall(t, wo) : wo;
+    } else if (both && aspi_uniform(t) < 0.5) {
+        wo.z = -wo.z;
+    }
+    for (way = 0; way < ways; way++)
+        lobes += asp_pdf(mat, way & 1 ? in_wall(t, wi) : wi, way & 2 ? in_wall(t, wo) : wo) / ways;
+    *pdf = 0.5 * lobes + (both || wo.z > 0 ? 0.5 : 0) * (both ? 0.5 : 1) * fabs(wo.z) / ASPI_PI;
+    return wo;
+}
 
 /* Distributions whose D has a pole at the horizon (Student's t below gamma = 2) give estimates of infinite
  * variance: their walks are right, but no number of samples shows that eval is. */
@@ -63,10 +75,18 @@ static int has_pole(const asp_ndf *ndf)
     return 0;
 }
 
+/* Skewed surfaces that are nearly mirrors, or steep: their walks have lobes from chains of facets and walls
+ * that no proposal here covers. */
+static int many_lobes(const aspi_trial *t)
+{
+    asp_roughness five = asp_map_to_roughness(&t->ndf->map);
+    return t->skewed && (t->scale * five.alpha_y < 0.03 || hypot(five.mean_x, five.mean_y) > 1);
+}
+
 static void try_material(aspi_trial *t, const asp_material *mat, const asp_material *guide,
                          const char *name, int both, size_t n)
 {
-    int compare = !has_pole(t->ndf) && !(both && t->skewed); /* a wall that refracts makes a Dirac peak */
+    int compare = !has_pole(t->ndf) && !many_lobes(t) && !(both && t->skewed); /* a wall that refracts makes a Dirac peak */
     for (size_t k = 0; k < t->view_count; k += 3) {
         asp_vec3 wi = t->views[k].w;
         mean total = { 0, 0 }, ends[CELLS] = { { 0, 0 } }, parts[CELLS] = { { 0, 0 } };
@@ -106,8 +126,14 @@ static void try_material(aspi_trial *t, const asp_material *mat, const asp_mater
     }
 }
 
+/* Surfaces steeper than this let light out only after thousands of facets: GGX's alpha is then above 8. */
+#define STEEPEST 4
+
 void aspi_law_walk(aspi_trial *t)
 {
+    asp_vec3 level[2] = { { 1, 0, 0 }, { 0, 1, 0 } };
+    if (fmax(asp_sigma(t->ndf, level[0]), asp_sigma(t->ndf, level[1])) > STEEPEST)
+        return;
     static const asp_rgb white = { 1, 1, 1 };
     size_t n = t->samples / 20;
     asp_material mirror = asp_mirror(t->ndf, ASP_MASK_WALL);
