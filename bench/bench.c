@@ -328,6 +328,29 @@ static const char *number(double x, char *buffer, size_t size)
     return buffer;
 }
 
+/* Each function's time over GGX's in the same run. */
+static double over_ggx(const bench_case *c)
+{
+    return c->median / median_of("ggx", c->function, c->bits, c->batch);
+}
+
+static void print_ratios(int bits, int batch)
+{
+    const char *model = NULL;
+    char a[32];
+    int i;
+    printf("\nover GGX");
+    for (i = 0; i < case_count; i++) {
+        const bench_case *c = &cases[i];
+        if (c->bits != bits || c->batch != batch || !strcmp(c->model, "by hand") || !strcmp(c->model, "ggx"))
+            continue;
+        if (c->model != model)
+            printf("\n%-17s", model = c->model);
+        printf(" %13s", number(over_ggx(c), a, sizeof a));
+    }
+    printf("\n");
+}
+
 static void print_table(int bits, int batch)
 {
     char a[32], b[32], cell[80];
@@ -346,7 +369,7 @@ static void print_table(int bits, int batch)
                  number(cases[i].instructions, b, sizeof b));
         printf(" %13s", cell);
     }
-    printf("\n");
+    print_ratios(bits, batch);
 }
 
 static double best_reference(void)
@@ -412,6 +435,14 @@ static void print_goals(double reference)
     }
 }
 
+static void write_number(FILE *f, double x, const char *after)
+{
+    if (x == x)
+        fprintf(f, "%.4f%s", x, after);
+    else
+        fprintf(f, "null%s", after);
+}
+
 static int write_json(const char *path, int rounds, double reference)
 {
     char temporary[4096];
@@ -427,13 +458,11 @@ static int write_json(const char *path, int rounds, double reference)
             reference);
     for (i = 0; i < case_count; i++) {
         fprintf(f, "%s\n  {\"model\": \"%s\", \"function\": \"%s\", \"bits\": %d, \"batch\": %s, "
-                   "\"ns\": %.4f, \"of_reference\": %.4f, \"instructions\": ",
+                   "\"ns\": %.4f, \"of_reference\": %.4f, \"of_ggx\": ",
                 i ? "," : "", cases[i].model, cases[i].function, cases[i].bits,
                 cases[i].batch ? "true" : "false", cases[i].median, cases[i].median / reference);
-        if (cases[i].instructions == cases[i].instructions)
-            fprintf(f, "%.2f}", cases[i].instructions);
-        else
-            fputs("null}", f);
+        write_number(f, over_ggx(&cases[i]), ", \"instructions\": ");
+        write_number(f, cases[i].instructions, "}");
     }
     fputs("\n]}\n", f);
     if (ferror(f) | fclose(f) || rename(temporary, path)) {
