@@ -69,6 +69,41 @@ static asp_vec3 direction(int i, int n, double low)
 
 enum { COUNT = 1000 };
 
+/* Whether samples that overwrite what they are made from are the single calls'. */
+static double in_place(const asp_material *mat, int swap)
+{
+    static double x[COUNT], y[COUNT], z[COUNT], a[COUNT], b[COUNT], r[COUNT], g[COUNT];
+    asp_cvec3s wi = { x, y, z };
+    asp_vec3s wo = { r, a, g };
+    asp_rgbs weight = { y, z, b };
+    double bad = 0;
+    int i;
+    for (i = 0; i < COUNT; i++) {
+        asp_vec3 w = direction(i, COUNT, 0.01);
+        x[i] = w.x;
+        y[i] = w.y;
+        z[i] = w.z;
+        a[i] = (i * 7 % COUNT + 0.5) / COUNT;
+        b[i] = (i + 0.5) / COUNT;
+    }
+    if (swap) {     /* wo on wi, the rest elsewhere */
+        wo.x = y;
+        wo.y = x;
+        wo.z = z;
+        weight.r = r;
+        weight.g = g;
+    }
+    asp_sample_n(mat, COUNT, wi, a, b, wo, swap ? a : x, weight);
+    for (i = 0; i < COUNT; i++) {
+        asp_bsdf_sample s = asp_sample(mat, direction(i, COUNT, 0.01), (i * 7 % COUNT + 0.5) / COUNT,
+                                       (i + 0.5) / COUNT);
+        bad += s.wo.x != wo.x[i] || s.wo.y != wo.y[i] || s.wo.z != wo.z[i];
+        bad += s.pdf != (swap ? a : x)[i];
+        bad += s.weight.r != weight.r[i] || s.weight.g != weight.g[i] || s.weight.b != weight.b[i];
+    }
+    return bad;
+}
+
 /* Those that ask nothing of the standard surface's symmetry. */
 static const char *const laws[] = { "sigma_flip", "sample_normal", "sample_visible", "sample_bsdf",
                                     "batch", "nan", "finite", "reciprocity", "weight" };
@@ -84,6 +119,8 @@ int main(void)
     asp_cvec3s in = { x, y, z };
     asp_vec3s back = { x, y, z };
     asp_laws_options options = asp_laws_options_default();
+    asp_material mats[2];
+    asp_rgb grey = { 0.4, 0.5, 0.6 };
     size_t broken = 99;
     double d = 0, s = 0, g = 0, p = 0, narrow = 0, same = 0, place = 0;
     int i, run = 0;
@@ -131,6 +168,10 @@ int main(void)
         place += asp_D(&a, asp_sample_visible(&a, direction(i, COUNT, -1), u[i], u[i])) != x[i];
     report("batches give the single calls' bits", same, 0);
     report("in place too", place, 0);
+    mats[0] = asp_mirror(&a, ASP_MASK_WALL);
+    mats[1] = asp_lambert_specular(&a, grey, grey, 1.5, 0);
+    for (i = 0; i < 4; i++)
+        report("samples that overwrite their inputs", in_place(&mats[i / 2], i % 2), 0);
     options.samples = 100000;
     for (i = 0; i < (int)(sizeof laws / sizeof *laws); i++) {
         options.only = laws[i];

@@ -339,7 +339,7 @@ ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s
     const asp_shape *k = &mat->ndf;
     asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK];
     asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK], y[ASP_BLOCK];
-    asp_real share[ASP_BLOCK], facet[ASP_BLOCK], v1[ASP_BLOCK];
+    asp_real share[ASP_BLOCK], facet[ASP_BLOCK], v1[ASP_BLOCK], p[ASP_BLOCK];
     if (!n)
         return;
     block_share(mat, n, wi.z, share);
@@ -351,9 +351,10 @@ ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s
     ASPI_OPS(k).density_n(k, n, mx, my, mz, D);
     ASPI_OPS(k).sigma_n(k, n, R(1.0), wi.x, wi.y, wi.z, si);
     ASPI_OPS(k).sigma_n(k, n, R(1.0), wo.x, wo.y, wo.z, so);
-    loop_lobe_density(n, wi.z, D, si, pdf);
-    loop_mixed_density(n, wi.z, wo.z, share, pdf);
-    loop_mixed_parts(k, n, mat->mask, wi, wo.x, wo.y, wo.z, mz, c, D, si, so, pdf, x, y);
+    loop_lobe_density(n, wi.z, D, si, p);
+    loop_mixed_density(n, wi.z, wo.z, share, p);
+    loop_mixed_parts(k, n, mat->mask, wi, wo.x, wo.y, wo.z, mz, c, D, si, so, p, x, y);
+    memcpy(pdf, p, n * sizeof *pdf); /* it may be where wi was */
     block_fresnel(mat, n, c, F.r, F.g, F.b);
     mat->model->ASPI_CALL(value_n)(mat, n, x, y, F.r, F.g, F.b);
 }
