@@ -405,9 +405,10 @@ void asp_sample_n(const asp_material *mat, size_t n, asp_cvec3s wi, const double
  *
  * Prepare in float64, narrow once, evaluate in float32 from the same text.
  *
- * Against float64 at the same directions: sigma and G1 within 2e-6 relative; D and the densities within
- * 1e-6 + 3e-7 E, E = log(P22(mean slope)/P22): a power turns a rounding of its argument (here of the
- * map's inverse, of its products and squares) into E times as much. So 2e-6 holds everywhere for GGX
+ * Against float64 at the same directions: sigma and G1 within 2e-6 relative (where they come from tables
+ * the error that the model states, area_error, is in both); D and the densities within 1e-6 + 3e-7 E
+ * (torrance_sparrow 4e-7 E: its angle is rounded once more), E = log(P22(mean slope)/P22): a power turns a
+ * rounding of its argument (here of the map's inverse, of its products and squares) into E times as much. So 2e-6 holds everywhere for GGX
  * and for Student's t with gamma up to 4, and for every distribution where P22 is above 0.04 of its
  * largest; at 1e-6 of the peak Beckmann's D is within 6e-6. sigma seen from below the mean plane
  * carries its exponent alike, and a map that turns, skews or stretches by a factor s adds cancellation

@@ -190,7 +190,9 @@ static void choose_origin(cubature *q)
     const asp_map *map = &q->mat->ndf.map;
     double cx = -q->wi.x / q->wi.z, cy = -q->wi.y / q->wi.z, radius = 1 / q->wi.z;
     double dx = map->tx - cx, dy = map->ty - cy, d = hypot(dx, dy);
-    double inside = radius - d, wanted = 0.5 * fmin(radius, sqrt(q->det));
+    double inside = radius - d, wanted;
+    double rough = (q->mat->ndf.model->own_scale ? q->scale : 1) * sqrt(q->det);
+    wanted = 0.5 * fmin(radius, rough);
     q->origin.x = map->tx;
     q->origin.y = map->ty;
     if (inside < wanted) {
