@@ -36,6 +36,16 @@ static const asp_param ellipsoid_keys[] = {
     { NULL, 0, 0, 0, 0, NULL }
 };
 
+/* Distributions that are nothing without data, and what is no slope distribution: no rows of asp_models(). */
+static const struct made { const char *name, *title, *source; } made[] = {
+    { "tabulated", "slopes=0/.../r,density=d/.../d[,tail=power]: a round density of slopes by samples",
+      "docs/tabulated.md; prepared numerically" },
+    { "histogram", "file=PATH[,bins=N][,range=R]: counted slopes, or those of a height field",
+      "docs/tabulated.md; exact sums over cells" },
+    { "sggx", "microflakes of the ellipsoid S = A^T A, in C: asperity_study.h",
+      "Walter et al. 2014, sec. 5.2; Heitz et al. 2015" },
+};
+
 static const struct mask { const char *name, *also, *title; } masks[] = {
     { "correlated", "height_correlated", "G2 = 1/(1 + Lambda_i + Lambda_o); the default" },
     { "uncorrelated", "separable", "G2 = G1(wi) G1(wo)" },
@@ -81,6 +91,15 @@ static json_t *distributions(void)
             "map", (*m)->keys == ASP_KEYS_ELLIPSOID ? "ellipsoid" : "slope",
             "alpha_default", (*m)->alpha, "parameters",
             parameters((*m)->params, (*m)->param_count)));
+    return list;
+}
+
+static json_t *from_data(void)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < sizeof made / sizeof *made; i++)
+        json_array_append_new(list, json_pack("{s:s, s:s, s:s}", "name", made[i].name, "title", made[i].title,
+                                              "source", made[i].source));
     return list;
 }
 
@@ -158,6 +177,7 @@ static const struct section {
     json_t *(*make)(void);
 } sections[] = {
     { "distributions", "Distributions, --ndf name:key=value,...", distributions },
+    { "from_data", "Made of data, and microflakes", from_data },
     { "slope_map", "Keys of every distribution but the ellipsoid", slope_map },
     { "ellipsoid_map", "Keys of the ellipsoid; or the matrix a11 ... a33, or s11 s12 s13 s22 s23 "
       "s33 of A^T A", ellipsoid_map },
@@ -271,6 +291,6 @@ const cmd_record cmd_list = {
     "list", "list distributions, materials, metals, maskings, formats, losses and laws",
     "[SECTION]", 0, 1,
     "With parameters, ranges, defaults and sources. SECTION is one of distributions,\n"
-    "slope_map, ellipsoid_map, materials, metals, masks, formats, losses, laws.",
+    "from_data, slope_map, ellipsoid_map, materials, metals, masks, formats, losses, laws.",
     options, run
 };
