@@ -31,7 +31,7 @@ static double steps_of(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double eta
     double mz = fabs(wi.z * wo.z > 0 ? wi.z + wo.z : wi.z + n * wo.z) / apart;
     double size = fabs(t->ndf->i00) + fabs(t->ndf->i01) + fabs(t->ndf->i10) + fabs(t->ndf->i11);
     double slope = 1 / fmax(mz, 1e-12) + hypot(t->ndf->map.tx, t->ndf->map.ty);
-    return 1e-15 * (1 + n) / apart / fmax(mz, 1e-12)
+    return 3e-15 * (1 + n) / apart / fmax(mz, 1e-12)
          * (1 / fmax(mz, 1e-12) + size * slope / t->scale * 40 + 1 / fabs(wo.z) + 1 / fabs(wi.z));
 }
 

@@ -80,7 +80,7 @@ static int has_pole(const asp_ndf *ndf)
 static int many_lobes(const aspi_trial *t)
 {
     asp_roughness five = asp_map_to_roughness(&t->ndf->map);
-    return t->skewed && (t->scale * five.alpha_y < 0.03 || hypot(five.mean_x, five.mean_y) > 1);
+    return t->skewed && (t->scale * five.alpha_y < 0.15 || hypot(five.mean_x, five.mean_y) > 1);
 }
 
 static void try_material(aspi_trial *t, const asp_material *mat, const asp_material *guide,

@@ -311,8 +311,13 @@ double aspi_histogram_count_p(const aspi_histogram *h, double samples)
  * weight: a sum of fewer has no Gaussian spread, and near the horizon most weights are 0. */
 double aspi_histogram_weight_p(const aspi_histogram *h, double samples)
 {
-    double chi2 = 0, carried = 0, sum = 0, sum2 = 0, value = 0;
+    double chi2 = 0, carried = 0, sum = 0, sum2 = 0, value = 0, all = 0, all2 = 0, typical;
     int i, cells = 0;
+    for (i = 0; i < ASPI_CELLS - 1; i++) {
+        all += h->sum[i];
+        all2 += h->sum2[i];
+    }
+    typical = all > 0 ? all2 / all : 1; /* weight, where too few samples say what is usual */
     for (i = 0; i < ASPI_CELLS - 1; i++) {
         double variance, d;
         carried += h->carried[i];
@@ -321,13 +326,15 @@ double aspi_histogram_weight_p(const aspi_histogram *h, double samples)
         value += samples * h->value[i];
         if (!(value == value) || !(sum == sum))
             return 0;
-        if (carried < 100 && i < ASPI_CELLS - 2)
+        /* enough of them, and not a few large weights among many small ones: (sum w)^2 / sum w^2 counts
+         * those that matter */
+        if ((carried < 100 || sum * sum < 60 * sum2) && i < ASPI_CELLS - 2)
             continue;
         d = sum - value;
         variance = sum2 - sum * sum / samples;
         /* at the end a pool may hold less: then its spread is at least that of 100 mean weights */
-        if (carried < 100)
-            variance = fmax(variance, 100 * (carried > 0 ? sum2 / carried : 1));
+        if (carried < 100 || sum * sum < 60 * sum2)
+            variance = fmax(fmax(variance, value * typical), 100 * (carried > 0 ? sum2 / fmin(carried, sum * sum / sum2) : 1));
         chi2 += d * d / variance;
         cells++;
         carried = sum = sum2 = value = 0;
