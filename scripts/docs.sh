@@ -85,6 +85,26 @@ cc -O2 -Iinclude examples/6_render.c "$build/libasperity_draw.a" "$build/libaspe
     -o "$scratch/render"
 (cd "$scratch" && ./render >render.log)
 put docs/images/spheres.png "$scratch/spheres.png"
+# pictures of docs/materials.md: NAME SAMPLES SPEC
+while read -r name samples spec; do
+    walk=
+    [ "$name" != walk ] || walk=--walk
+    # shellcheck disable=SC2086
+    asperity render $walk --size 144 --spp "$samples" --material "$spec" -o "$scratch/material.png" ||
+        { echo "docs.sh: $name could not be rendered" >&2; exit 1; }
+    put "docs/images/materials/$name.png" "$scratch/material.png"
+done <<'END'
+conductor 64 conductor:metal=Au,ndf=(ggx:alpha=0.2)
+film 64 conductor:eta=2.7,k=3.7,film=60,film_eta=2.4,ndf=(ggx:alpha=0.15)
+lambert_specular 64 lambert_specular:diffuse=0.4/0.08/0.05,ndf=(student_t:alpha=0.15,gamma=2.5)
+dielectric 128 dielectric:eta=1.5,ndf=(ggx:alpha=0.05)
+thin 64 dielectric:eta=1.5,thin=1,ndf=(ggx:alpha=0.2)
+rough_diffuse 8 rough_diffuse:albedo=0.6/0.55/0.5,ndf=(ggx:alpha=0.7)
+plastic 64 plastic:albedo=0.5/0.05/0.05,ndf=(ggx:alpha=0.15)
+compensated 64 compensated:metal=Cu,ndf=(ggx:alpha=0.8)
+single 64 conductor:metal=Cu,ndf=(ggx:alpha=0.8)
+walk 32 conductor:metal=Cu,ndf=(ggx:alpha=0.8)
+END
 file docs/commands.md asperity help --markdown
 file docs/distributions.md asperity list --markdown
 file docs/figures.md asperity figures --markdown

@@ -2,6 +2,7 @@
 #include "asperity_ndf.h"
 #include "asperity_study.h"
 #include "cmd.h"
+#include "bsdf/bsdf.h"
 #include "core/rng.h"
 #include "precision.h"
 
@@ -170,7 +171,10 @@ static int make_job(const cmd_args *args, job *work)
     work->materialf = asp_material_narrow(&work->material);
     if (work->what == VISIBLE && !(asp_sigma(&work->material.ndf, work->wi) > 0))
         return cmd_usage("--wi %s: no facet is seen from there", cmd_text(args, "wi"));
-    if (work->what == BRDF && !(work->wi.z > 0))
+    int both = work->material.model && work->material.model->facets == ASPI_FACETS_REFRACT;
+    if (work->what == BRDF && both && work->wi.z == 0)
+        return cmd_usage("--wi %s: lies in the surface", cmd_text(args, "wi"));
+    if (work->what == BRDF && !both && !(work->wi.z > 0))
         return cmd_usage("--wi %s: z = %g is outside (0, 1]", cmd_text(args, "wi"), work->wi.z);
     return make_sampler(args, work);
 }
@@ -219,7 +223,8 @@ const cmd_record cmd_sample = {
     "sample", "draw normals, visible normals or scattered directions", "normal|visible|brdf", 1, 1,
     "Writes CSV: the uniform numbers u1, u2, the given direction wi, the drawn normal\n"
     "m or direction wo, its density, and for brdf the weight f cos(theta_o) / pdf (0\n"
-    "where wo is below the horizon). The columns are those that `eval` reads:\n"
+    "where wo is lost to the surface; through a dielectric wi and wo may be on either\n"
+    "side, and cos is its absolute value). The columns are those that `eval` reads:\n"
     "\n"
     "  asperity sample brdf --ndf ggx:alpha=0.3 --wi 30,0 -n 1000 |\n"
     "  asperity eval brdf_cos --ndf ggx:alpha=0.3\n"
