@@ -291,6 +291,7 @@ const cmd_record cmd_list = {
     "list", "list distributions, materials, metals, maskings, formats, losses and laws",
     "[SECTION]", 0, 1,
     "With parameters, ranges, defaults and sources. SECTION is one of distributions,\n"
-    "from_data, slope_map, ellipsoid_map, materials, metals, masks, formats, losses, laws.",
+    "from_data, slope_map, ellipsoid_map, materials, metals, masks, formats, losses,\n"
+    "laws.",
     options, run
 };

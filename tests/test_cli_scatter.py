@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""The command on scattering models: energy, walks, dielectrics from both sides, pictures of them."""
+import math
+import os
+import struct
+
+from cli import check, near, rows, run, run_sections
+
+# Light kept by single scattering of mirror facets, percent, at roughness 0.1 ... 1 (computed with 12 digits
+# outside this library): separable and height-correlated masking.
+KEPT = {
+    1.65: ([86.75, 72.64, 60.30, 49.93, 41.34, 34.30, 28.54, 23.84, 20.00, 16.85],
+           [87.24, 73.97, 62.47, 52.85, 44.89, 38.34, 32.95, 28.49, 24.80, 21.73]),
+    2: ([97.16, 91.39, 84.28, 76.62, 68.94, 61.56, 54.67, 48.37, 42.71, 37.66],
+        [97.20, 91.58, 84.69, 77.33, 70.02, 63.06, 56.63, 50.79, 45.56, 40.91]),
+    4: ([99.29, 97.26, 94.12, 90.08, 85.35, 80.13, 74.61, 68.97, 63.37, 57.93],
+        [99.30, 97.30, 94.19, 90.21, 85.56, 80.46, 75.11, 69.69, 64.37, 59.27]),
+    50: ([99.51, 98.08, 95.78, 92.73, 89.04, 84.83, 80.23, 75.34, 70.29, 65.20],
+         [99.52, 98.10, 95.82, 92.80, 89.16, 85.02, 80.50, 75.73, 70.85, 65.98]),
+}
+GLASS = "dielectric:eta=1.5,ndf=(ggx:alpha=0.3)"
+MODELS = ["conductor:metal=Cu,ndf=(ggx:alpha=0.4)", "lambert_specular:ndf=(ggx:alpha=0.4)", GLASS,
+          "dielectric:eta=1.5,thin=1,ndf=(ggx:alpha=0.3)", "rough_diffuse:albedo=0.6,ndf=(ggx:alpha=0.4)",
+          "rough_diffuse:form=oren_nayar,ndf=(ggx:alpha=0.4)", "plastic:albedo=0.5/0.2/0.1,ndf=(ggx:alpha=0.3)",
+          "compensated:metal=Au,ndf=(beckmann:alpha=0.5)", "compensated:form=turquin,ndf=(ggx:alpha=0.5)",
+          "conductor:metal=Al,film=300,film_eta=1.5,ndf=(ggx:alpha=0.3)"]
+
+
+def energy_values():
+    for gamma, columns in KEPT.items():
+        for mask, percent in zip(("uncorrelated", "correlated"), columns):
+            got = rows(run("energy", "student_t:alpha={},gamma=%g" % gamma, "--over", "0.1:1:10", "--mask", mask,
+                           "-n", "65536", status=0).stdout)
+            check(len(got) == 10, "rows of energy")
+            for row, want in zip(got, percent):
+                value, error = float(row["albedo_g"]), float(row["error"])
+                # the table's last digit, and what is stated
+                check(abs(value - want / 100) < 6 * error + 1e-4 and error < 3e-3,
+                      "gamma %g, alpha %s, %s: %g +- %g, not %g" % (gamma, row["value"], mask, value, error,
+                                                                   want / 100))
+    # over angles: along the normal nothing is masked once; a half mirror gives half
+    full = rows(run("energy", "ggx:alpha=0.2", "--angles", "4", status=0).stdout)
+    half = rows(run("energy", "conductor:f0=0.5,tint=1,ndf=(ggx:alpha=0.0001)", "--angles", "4", status=0).stdout)
+    check([row["theta"] for row in full] == ["0", "30", "60", "90"], "angles of energy")
+    check(near(float(half[0]["albedo_r"]), 0.5, 1e-4), "a half mirror: %s" % half[0]["albedo_r"])
+    grey = 0.5 + 0.5 * (1 - math.cos(math.radians(60))) ** 5
+    check(near(float(half[2]["albedo_r"]), grey, 1e-4), "Schlick at 60 degrees: %s" % half[2]["albedo_r"])
+
+
+def energy_walks():
+    for spec in ("ggx:alpha=0.8", "beckmann:alpha=1", "student_t:alpha=0.5,gamma=2.5,mean_x=0.3",
+                 "dielectric:transport=importance,ndf=(ggx:alpha=0.6)", "rough_diffuse:albedo=1,ndf=(ggx:alpha=0.5)"):
+        for row in rows(run("energy", spec, "--walk", "--angles", "3", "-n", "2000", status=0).stdout):
+            check(near(float(row["walk_g"]), 1, 1e-9), "%s at %s: walks return %s" % (spec, row["theta"],
+                                                                                     row["walk_g"]))
+            check(float(row["albedo_g"]) <= 1 + 1e-9, "single scattering above 1")
+    one = rows(run("energy", "conductor:metal=Cu,ndf=(ggx:alpha=0.8)", "--walk", "--angles", "3",
+                   status=0).stdout)[0]
+    check(float(one["albedo_r"]) + 0.1 < float(one["walk_r"]) < 1, "walks add light: %s" % one)
+    check(float(one["walk_r"]) > float(one["walk_g"]) > float(one["walk_b"]), "the light added is coloured")
+
+
+def energy_refusals():
+    def bad(*words, says):
+        run("energy", *words, "-o", "out.csv", status=2, says=says)
+        run("energy", *words, "-o", "out.svg", status=2, says=says)
+    bad("gxx:alpha=0.1", says=["gxx"])
+    bad("ggx:alpha=-1", says=["alpha = -1", "[1e-05, 100]"])
+    bad("conductor:metal=Xy,ndf=(ggx)", says=["Xy"])
+    bad("plastic:albedo=2,ndf=(ggx)", says=["albedo"])
+    bad("ggx:alpha=0.3", "--over", "0.1:1:10", says=["--over", "{}"])
+    bad("ggx:alpha={}", "--over", "0.1:1", says=["--over", "LOW:HIGH:N"])
+    bad("ggx:alpha={}", "--over", "0.1:1:0", says=["--over"])
+    bad("ggx:alpha={}", "--over", "a:b:3", says=["--over"])
+    bad("ggx:alpha={}", "--over", "0.1:1000:3", says=["alpha = "])
+    bad("ggx", "--mask", "none", says=["none"])
+    bad("ggx", "--samples", "1", says=["--samples"])
+    bad(*["ggx"] * 13, says=["12"])
+    check(os.listdir(".") == [], "left behind: %s" % os.listdir("."))
+    run("energy", "ggx:alpha=0.4", "--angles", "3", "-o", "no/where.csv", status=1, says=["no/where.csv"])
+    run("energy", "ggx:alpha=0.4", "conductor:metal=Au,ndf=(ggx)", "--angles", "3", "-o", "ok.svg", status=0)
+    run("energy", "ggx:alpha=0.4", "--angles", "3", "-o", "ok.csv", status=0)
+    check(sorted(os.listdir(".")) == ["ok.csv", "ok.svg"], "left behind: %s" % os.listdir("."))
+
+
+def models():
+    """Every model: samples whose density and weight are those that eval gives."""
+    for spec in MODELS:
+        for wi in ("40,10", "0.5,0.3,-0.8") if "dielectric" in spec else ("40,10",):
+            made = run("sample", "brdf", "--material", spec, "--wi", wi, "-n", "300", status=0).stdout
+            full = run("eval", "brdf_cos", "--material", spec, stdin=made, status=0).stdout
+            full = rows(run("eval", "pdf_brdf", "--material", spec, stdin=full, status=0).stdout)
+            seen, below = 0, 0
+            for row in full:
+                weight, pdf = float(row["weight_g"]), float(row["pdf"])
+                seen += weight > 0
+                below += weight > 0 and float(row["wo_z"]) * float(row["wi_z"]) < 0
+                if weight > 0:
+                    check(near(weight * pdf, float(row["brdf_cos_g"]), 1e-9), "%s: weight is not f cos / pdf" % spec)
+                    check(near(pdf, float(row["pdf_brdf"]), 1e-9), "%s: pdf" % spec)
+            check(seen > 150, "%s from %s: %d samples with weight" % (spec, wi, seen))
+            if "dielectric" in spec:
+                check(0.2 * seen < below < seen, "%s from %s: %d of %d cross" % (spec, wi, below, seen))
+    # f(wo, wi) = f(wi, wo) n_o^2/n_i^2
+    there = "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0.6,0,0.8,-0.3,0.1,%r\n"
+    back = "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n-0.3,0.1,%r,0.6,0,0.8\n"
+    z = -math.sqrt(0.9)
+    f = [float(rows(run("eval", "brdf", "--material", GLASS, stdin=text % z, status=0).stdout)[0]["brdf_g"])
+         for text in (there, back)]
+    check(f[0] > 0 and near(f[1], f[0] * 2.25, 1e-12), "glass from both sides: %r" % f)
+    run("sample", "brdf", "--material", GLASS, "--wi", "1,0,0", status=2, says=["--wi", "surface"])
+    for spec in MODELS[:2] + MODELS[4:]:
+        run("sample", "brdf", "--material", spec, "--wi", "0.6,0,-0.8", status=2, says=["-0.8", "(0, 1]"])
+
+
+def read_pfm(name):
+    with open(name, "rb") as file:
+        check(file.readline().strip() == b"PF", name + ": no colour PFM")
+        width, height = (int(x) for x in file.readline().split())
+        file.readline()
+        data = file.read()
+    return width, struct.unpack("<%df" % (3 * width * height), data)
+
+
+def middle(name):
+    """Mean of green in the middle of a picture, which the sphere fills."""
+    width, data = read_pfm(name)
+    inside = range(width // 3, 2 * width // 3)
+    values = [data[3 * (y * width + x) + 1] for y in inside for x in inside]
+    check(all(0 <= v < 1e3 for v in values), name + ": not finite")
+    return sum(values) / len(values)
+
+
+def pictures():
+    furnace = ["--env", "furnace", "--size", "24", "--spp", "64"]
+    def render(name, *words):
+        run("render", *furnace, *words, "-o", name, status=0)
+        return middle(name)
+    mirror = ["--ndf", "ggx:alpha=0.8"]
+    one, all_ = render("one.pfm", *mirror), render("all.pfm", *mirror, "--walk")
+    check(one < 0.75, "single scattering in a furnace: %g" % one)
+    check(abs(all_ - 1) < 0.02, "walks in a furnace: %g" % all_)
+    copper = ["--material", "conductor:metal=Cu,ndf=(ggx:alpha=0.8)"]
+    check(render("a.pfm", *copper) < render("b.pfm", *copper, "--walk") - 0.05, "walks are brighter")
+    glass = render("c.pfm", "--material", "dielectric:eta=1.5,ndf=(ggx:alpha=0.05)")
+    check(0.9 < glass < 1.02, "a glass sphere in a furnace: %g" % glass)
+    for i, spec in enumerate(MODELS):
+        check(0.02 < render("m%d.pfm" % i, "--material", spec) < 1.02, spec + ": brightness")
+    # the picture depends on its description alone
+    for threads in ("1", "2"):
+        run("render", "--material", GLASS, "--size", "16", "--spp", "8", "--walk", "--threads", threads,
+            "-o", threads + ".pfm", status=0)
+    with open("1.pfm", "rb") as a, open("2.pfm", "rb") as b:
+        check(a.read() == b.read(), "the picture of a walk depends on the threads")
+
+
+run_sections([energy_values, energy_walks, energy_refusals, models, pictures])
