@@ -385,7 +385,7 @@ const cmd_record cmd_convert_ndf = {
     "  asperity convert-ndf disney:roughness=0.5,anisotropic=0.3\n"
     "  asperity convert-ndf gltf:roughness=0.4 --to beckmann --to pbrt\n"
     "  asperity convert-ndf ggx:alpha=0.3 --to abc:gamma=1.75 --norm peak\n"
-    "  asperity convert-ndf moments:xx=0.02,yy=0.05 --as student_t:gamma=4 --to matrix\n"
+    "  asperity convert-ndf moments:xx=0.02,yy=0.05 --as student_t:gamma=4 --to map\n"
     "\n"
     "Errors of a nearest distribution are relative; an asterisk marks the norm that\n"
     "was made least; `peak` is its density at the mean slope over the other's.",

@@ -29,11 +29,13 @@ static const char *const ellipsoids[] = {
 
 enum { Q_MAKE, Q_MAP, Q_D, Q_P22, Q_SIGMA, Q_G1, Q_LAMBDA, Q_G2, Q_NORMAL, Q_VISIBLE, Q_PDF_NORMAL,
        Q_PDF_VISIBLE, Q_FRESNEL, Q_EVAL, Q_EVAL_COS, Q_PDF, Q_SAMPLE, Q_FORMS, Q_ORACLE, Q_WALTER, Q_SGGX,
-       QUANTITIES };
+       Q_MODEL_MAKE, Q_MODEL_EVAL, Q_MODEL_PDF, Q_MODEL_SAMPLE, Q_BOUNDED, Q_WALK_EVAL, Q_WALK_SAMPLE,
+       Q_WALK_PDF, QUANTITIES };
 static const char *const quantity[QUANTITIES] = {
     "make", "map", "D", "P22", "sigma", "G1", "lambda", "G2", "sample_normal", "sample_visible",
     "pdf_normal", "pdf_visible", "fresnel", "eval", "eval_cos", "pdf", "sample",
-    "student_lambda", "oracle", "walter", "sggx"
+    "student_lambda", "oracle", "walter", "sggx",
+    "model_make", "model_eval", "model_pdf", "model_sample", "bounded", "walk_eval", "walk_sample", "walk_pdf"
 };
 
 typedef uint64_t hashes[QUANTITIES];
@@ -69,6 +71,12 @@ static asp_vec3 direction(void)
     w.y = 2 * b * sqrt(1 - s);
     w.z = 1 - 2 * s;
     return w;
+}
+
+static double next_uniform(void *unused)
+{
+    (void)unused;
+    return uniform();
 }
 
 static int mismatches;
@@ -153,12 +161,6 @@ static int one_histogram(int verbose, hashes wide, hashes narrow)
     return 0;
 }
 
-static double next_uniform(void *unused)
-{
-    (void)unused;
-    return uniform();
-}
-
 static void hash_vector(uint64_t *h, asp_vec3 v)
 {
     hash_64(h, v.x);
@@ -213,6 +215,52 @@ static int study(hashes wide, hashes narrow)
     return bad;
 }
 
+/* The scattering models beside those of `all`, each with a distribution, and what walks over them. */
+static int models(int verbose, hashes wide, hashes narrow)
+{
+    static const char *const specs_of[] = {
+        "dielectric:eta=1.5,ndf=(ggx:alpha=0.3)",
+        "dielectric:eta=0.6,transport=importance,mask=uncorrelated,ndf=(beckmann:alpha_x=0.5,alpha_y=0.2,mean_x=0.3)",
+        "dielectric:eta=1.8,thin=1,mask=v_cavity,ndf=(student_t:alpha=0.4,gamma=2.7)",
+        "rough_diffuse:albedo=0.8/0.5/0.2,ndf=(ggx:alpha=0.5)",
+        "rough_diffuse:form=oren_nayar,ndf=(beckmann:alpha=0.5)", "rough_diffuse:form=fujii,ndf=(ggx:alpha=0.6)",
+        "plastic:albedo=0.7/0.4/0.2,eta=1.6,ndf=(ggx:alpha=0.2)",
+        "plastic:albedo=1,mask=wall,ndf=(student_t:alpha_x=0.2,alpha_y=0.5,gamma=3.1,mean_x=0.3)",
+        "compensated:metal=Au,ndf=(beckmann:alpha_x=0.7,alpha_y=0.4)",
+        "compensated:metal=Cu,form=turquin,ndf=(ggx:alpha=0.6)",
+        "conductor:metal=Ti,film=320,film_eta=2.1,ndf=(ggx:alpha_x=0.3,alpha_y=0.1,rotation=0.4)",
+        "conductor:f0=0.9/0.6/0.3,tint=0.8,ndf=(student_t:alpha=0.5,gamma=2.2,mean_y=-0.4)"
+    };
+    size_t i;
+    int q, bad = 0;
+    for (i = 0; i < sizeof specs_of / sizeof *specs_of; i++) {
+        asp_material mat;
+        asp_materialf matf;
+        hashes w, n;
+        memset(w, 0, sizeof w);
+        memset(n, 0, sizeof n);
+        if (asp_material_parse(NULL, specs_of[i], &mat, NULL) != ASP_OK) {
+            printf("%s refused\n", specs_of[i]);
+            bad++;
+            continue;
+        }
+        matf = asp_material_narrow(&mat);
+        state = 777u + i;
+        hash_doubles(&w[Q_MODEL_MAKE], mat.energy, ASP_ENERGY_NUMBERS);
+        hash_doubles(&w[Q_MODEL_MAKE], &mat.a.r, 12);
+        model_64(&mat, w);
+        model_32(&matf, n);
+        for (q = 0; q < QUANTITIES; q++) {
+            add_bits(&wide[q], w[q]);
+            add_bits(&narrow[q], n[q]);
+            if (verbose && q >= Q_MODEL_MAKE)
+                printf("%s %s %016llx %016llx\n", specs_of[i], quantity[q], (unsigned long long)w[q],
+                       (unsigned long long)n[q]);
+        }
+    }
+    return bad;
+}
+
 int main(int argc, char **argv)
 {
     hashes wide, narrow;
@@ -243,6 +291,7 @@ int main(int argc, char **argv)
     }
     refused += one_histogram(verbose, wide, narrow);
     refused += study(wide, narrow);
+    refused += models(verbose, wide, narrow);
     for (i = 0; i < QUANTITIES; i++)
         printf("%-16s float64 %016llx float32 %016llx\n", quantity[i],
                (unsigned long long)wide[i], (unsigned long long)narrow[i]);
@@ -284,6 +333,9 @@ int main(int argc, char **argv)
 #define arrays ASP_NAME(arrays)
 #define store ASP_NAME(store)
 #define materials ASP_NAME(materials)
+#define model ASP_NAME(model)
+#define hash_sample ASP_NAME(hash_sample)
+#define some_direction ASP_NAME(some_direction)
 
 static void hash(uint64_t *h, asp_real x)
 {
@@ -442,12 +494,66 @@ static void all(const asp_shape *k, const asp_ndf *ndf, uint64_t *h)
     }
 }
 
+static asp_v3 some_direction(int i)
+{
+    asp_vec3 w = direction();
+    asp_v3 v;
+    v.x = (asp_real)w.x;
+    v.y = (asp_real)w.y;
+    v.z = (asp_real)(i % 3 ? fabs(w.z) : w.z);
+    return v;
+}
+
+static void hash_sample(uint64_t *h, SAMPLE s)
+{
+    hash(h, s.wo.x);
+    hash(h, s.wo.y);
+    hash(h, s.wo.z);
+    hash(h, s.pdf);
+    hash(h, s.weight.r);
+    hash(h, s.weight.g);
+    hash(h, s.weight.b);
+}
+
+/* Random directions, and those that samples lead to, so that refracted pairs are not all dark. */
+static void model(const MATERIAL *mat, uint64_t *h)
+{
+    int i;
+    for (i = 0; i < 150; i++) {
+        asp_v3 wi = some_direction(i), wo = some_direction(i + 1);
+        asp_real u1 = (asp_real)uniform(), u2 = (asp_real)uniform(), u3 = (asp_real)uniform();
+        SAMPLE s = CALL(sample_lobe)(mat, wi, u1, u2, u3);
+        asp_c3 f;
+        hash_sample(&h[Q_MODEL_SAMPLE], s);
+        hash_sample(&h[Q_MODEL_SAMPLE], CALL(sample)(mat, wi, u1, u2));
+        wo = i % 2 ? s.wo : wo;
+        f = CALL(eval)(mat, wi, wo);
+        hash(&h[Q_MODEL_EVAL], f.r);
+        hash(&h[Q_MODEL_EVAL], f.g);
+        hash(&h[Q_MODEL_EVAL], f.b);
+        hash(&h[Q_MODEL_EVAL], CALL(eval_cos)(mat, wi, wo).g);
+        hash(&h[Q_MODEL_PDF], CALL(pdf)(mat, wi, wo));
+        hash_sample(&h[Q_BOUNDED], CALL(sample_bounded)(mat, wi, u1, u2));
+        hash(&h[Q_BOUNDED], CALL(pdf_bounded)(mat, wi, wo));
+        s = CALL(walk_sample)(mat, wi, next_uniform, NULL);
+        hash_sample(&h[Q_WALK_SAMPLE], s);
+        f = CALL(walk_eval_cos)(mat, wi, wo, next_uniform, NULL);
+        hash(&h[Q_WALK_EVAL], f.r);
+        hash(&h[Q_WALK_EVAL], f.g);
+        hash(&h[Q_WALK_EVAL], f.b);
+        hash(&h[Q_WALK_PDF], CALL(walk_pdf)(mat, wi, wo));
+    }
+}
+
 #undef hash
 #undef all
 #undef same
 #undef arrays
 #undef store
 #undef materials
+#undef model
+#undef hash_sample
+#undef some_direction
 #undef WI
 #undef WO
 #undef M
