@@ -198,7 +198,7 @@ static void batch_size(aspi_trial *t, const asp_shape *k, buffers *b, size_t n)
             check_scalar(t, name, n, i, s.z, b->c[i]);
         }
     }
-    for (kind = 0; kind < ASPI_MATERIALS; kind++) {
+    for (kind = 0; kind < ASPI_MATERIALS + (n == 7 ? ASPI_MORE_MATERIALS : 0); kind++) {
         const char *name;
         MATERIAL_TYPE mat = MATERIAL(t, kind, &name);
         for (q = 0; q < 2; q++) {

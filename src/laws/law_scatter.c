@@ -1,17 +1,33 @@
 /* law_scatter.c - laws of scattering over the distribution: a mirror under every masking, gold, and
- * a diffuse base under a coat */
+ * a diffuse base under a coat; plastic, gold with its lost light, and Lambertian facets */
 #include "laws/laws.h"
+#include "bsdf/bsdf.h"
 
 #include <math.h>
 
-enum { MIRRORS = 5, MATERIALS = ASPI_MATERIALS };
+enum { MIRRORS = 5, MATERIALS = ASPI_MATERIALS + ASPI_MORE_MATERIALS };
+extern const asp_bsdf asp_bsdf_compensated;
 static const int masks[MIRRORS] = { ASP_MASK_CORRELATED, ASP_MASK_UNCORRELATED, ASP_MASK_V_CAVITY,
                                     ASP_MASK_CORRELATED | ASP_MASK_WALL,
                                     ASP_MASK_UNCORRELATED | ASP_MASK_WALL };
 static const char *const names[MATERIALS] = { "mirror correlated", "mirror uncorrelated",
                                               "mirror v_cavity", "mirror correlated+wall",
                                               "mirror uncorrelated+wall", "conductor",
-                                              "lambert_specular" };
+                                              "lambert_specular", "plastic", "compensated",
+                                              "rough_diffuse" };
+
+/* Trials of a kind: Lambertian facets are a quadrature for each f. */
+static int trials(int kind, int most) { return kind == MATERIALS - 1 ? most / 10 : most; }
+
+/* There is no maker of it: its record prepares a conductor. */
+static asp_material compensated(const asp_ndf *ndf, asp_rgb eta, asp_rgb k)
+{
+    asp_material mat = asp_conductor(ndf, eta, k, ASP_MASK_CORRELATED);
+    mat.model = &asp_bsdf_compensated;
+    mat.b.r = 0;
+    mat.model->prepare(&mat, NULL);
+    return mat;
+}
 
 asp_material aspi_material(const asp_ndf *ndf, int kind, const char **name)
 {
@@ -22,6 +38,12 @@ asp_material aspi_material(const asp_ndf *ndf, int kind, const char **name)
         return asp_mirror(ndf, masks[kind]);
     if (kind == MIRRORS)
         return asp_conductor(ndf, eta, k, ASP_MASK_CORRELATED);
+    if (kind == MIRRORS + 2)
+        return asp_plastic(ndf, diffuse, 1.5, ASP_MASK_CORRELATED);
+    if (kind == MIRRORS + 3)
+        return compensated(ndf, eta, k);
+    if (kind == MIRRORS + 4)
+        return asp_rough_diffuse(ndf, diffuse, ASP_MASK_CORRELATED);
     return asp_lambert_specular(ndf, diffuse, specular, 1.5, ASP_MASK_CORRELATED);
 }
 
@@ -45,7 +67,7 @@ void aspi_law_reciprocity(aspi_trial *t)
     const char *name;
     for (kind = 0; kind < MATERIALS; kind++) {
         asp_material mat = aspi_material(t->ndf, kind, &name);
-        for (i = 0; i < 300; i++) {
+        for (i = 0; i < trials(kind, 300); i++) {
             asp_vec3 wi = up(aspi_random_direction(t)), wo = up(aspi_random_direction(t)), m;
             asp_rgb a, b;
             double steps;
@@ -100,7 +122,7 @@ void aspi_law_weight(aspi_trial *t)
     const char *name;
     for (kind = 0; kind < MATERIALS; kind++) {
         asp_material mat = aspi_material(t->ndf, kind, &name);
-        for (i = 0; i < 400; i++) {
+        for (i = 0; i < trials(kind, 400); i++) {
             const aspi_view *v = &t->views[(size_t)i % t->view_count];
             asp_bsdf_sample s = asp_sample(&mat, v->w, aspi_uniform(t), aspi_uniform(t));
             asp_rgb f = asp_eval_cos(&mat, v->w, s.wo), again = asp_eval(&mat, v->w, s.wo), w;

@@ -101,6 +101,7 @@ double aspi_r2_density(const aspi_trial *t, double r, double phi);
 
 /* Seven materials over a distribution: five mirrors, a conductor, a mixture (law_scatter.c). */
 #define ASPI_MATERIALS 7
+#define ASPI_MORE_MATERIALS 3   /* kinds after those, slow to make or to evaluate */
 asp_material aspi_material(const asp_ndf *ndf, int kind, const char **name);
 
 /* ---- random numbers and statistics (statistics.c) */
