@@ -50,8 +50,11 @@ static asp_vec3 propose(aspi_trial *t, const asp_material *mat, asp_vec3 wi, int
     asp_vec3 wo = { sqrt(u1) * cos(2 * ASPI_PI * u2), sqrt(u1) * sin(2 * ASPI_PI * u2), z };
     int ways = t->skewed ? 4 : 1, way = (int)(aspi_uniform(t) * ways);
     if (aspi_uniform(t) < 0.5) {
-        wo = asp_sample_lobe(mat, way & 1 ? in_wall(t, wi) : wi, u1, u2, aspi_uniform(t)).wo;
-        wo = way & 2 ? in_wall(t, wo) : wo;
+        asp_bsdf_sample s = asp_sample_lobe(mat, way & 1 ? in_wall(t, wi) : wi, u1, u2, aspi_uniform(t));
+        *pdf = 0;
+        if (s.pdf <= 0) /* into the surface: asp_pdf knows nothing of these */
+            return wi;
+        wo = way & 2 ? in_wall(t, s.wo) : s.wo;
     } else if (both && aspi_uniform(t) < 0.5) {
         wo.z = -wo.z;
     }
