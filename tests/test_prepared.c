@@ -294,7 +294,7 @@ static void check_batch(const asp_ndf *k, const char *name)
 int main(void)
 {
     static const double abc[][2] = {
-        { 20, 1.75 }, { 1e-4, 0 }, { 1e-4, 1e4 }, { 1e6, 1e4 }, { 1e6, 0.54 }, { 1e5, 1 }, { 1000, 3 },
+        { 20, 1.75 }, { 1e-4, 0 }, { 1e-4, 1000 }, { 1e6, 1000 }, { 1e6, 0.54 }, { 1e5, 1 }, { 1000, 3 },
         { 4250, 0.5 }, { 0.0212, 1000 }, { 1, 20 }, { 1e5, 1.75 }
     };
     static const double q[] = { 0, 1e-3, 0.02, 0.1, 0.4, 1.3, 6 };

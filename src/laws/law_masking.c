@@ -109,15 +109,16 @@ static void G1_value(aspi_trial *t, asp_vec3 w, int k)
 {
     int mask = smith[k];
     double G1 = asp_G1(t->ndf, w, mask), lambda = asp_lambda(t->ndf, w, mask);
-    double area = asp_sigma(t->ndf, w), expected;
+    double area = asp_sigma(t->ndf, w), other = asp_sigma(t->ndf, minus(w)), expected;
     expected = mask & ASP_MASK_WALL ? w.z / (area + wall_facing(t->ndf, w))
                                     : fmin(1, w.z / area);
     aspi_find(t, fabs(G1 - expected) / expected,
               4e-15 + (mask & ASP_MASK_WALL ? 4 * height_step(t, w) / area : 0),
               "%s w = (%.9g, %.9g, %.9g): G1 %.17g, from sigma %.17g", smith_name[k], w.x, w.y,
               w.z, G1, expected);
+    /* Lambda is the area of the other side less what faces it: that area's error is one of Lambda w.z */
     aspi_find(t, fabs(G1 * (1 + lambda) - 1), 4e-15 + 4 * height_step(t, w) / area
-              + FROM_BELOW * stated_error(t),
+              + stated_error(t) * (FROM_BELOW + other / fmax(area, w.z)),
               "%s w = (%.9g, %.9g, %.9g): G1 (1 + Lambda)", smith_name[k], w.x, w.y, w.z);
     aspi_find(t, !(G1 >= 0 && G1 <= 1 && lambda >= 0), 0,
               "%s w = (%.9g, %.9g, %.9g): G1 %.17g, Lambda %.17g out of range", smith_name[k],

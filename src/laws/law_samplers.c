@@ -241,11 +241,11 @@ static double step_size(asp_vec3 a, asp_vec3 b)
     return hypot(hypot(a.x - b.x, a.y - b.y), a.z - b.z);
 }
 
-/* The largest step on a grid of the unit interval is halved until it is 2^-44 wide: a jump stays, a
+/* The largest step on a grid of the unit interval is halved until it is 2^-53 wide: a jump stays, a
  * steep place goes. The ends, where slopes run off to infinity, are left out. */
 static double worst_jump(const aspi_trial *t, const path *p, double *at)
 {
-    enum { GRID = 512, HALVINGS = 34 };
+    enum { GRID = 512, HALVINGS = 44 };
     double lo = 0, hi = 0, worst = -1;
     asp_vec3 last = along(t, p, 0.002), a, b;
     int i;

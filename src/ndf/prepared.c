@@ -297,7 +297,9 @@ static void prepared_area_tables(const prepared_source *s, double t0, double *ou
     below[0] = aspi_log_64(0.5 / (t0 * t0)) - prepared_log(s, 0);
     for (i = 1; i < m; i++) {
         double root = (double)i / (m - i), mu = t0 * (root * root) * (root * root);
-        below[i] = prepared_log_far(s, &kernel, mu) - 1.5 * aspi_log_64(mu * mu + t0 * t0);
+        /* where P22 is long gone the differences of its logarithm are, too */
+        below[i] = prepared_log(s, mu * mu) < -1e7 ? below[i - 1]
+                 : prepared_log_far(s, &kernel, mu) - 1.5 * aspi_log_64(mu * mu + t0 * t0);
     }
     below[m] = below[m - 1];
     prepared_spline(m, 1.0 / m, below, 1, 0, 0, out + PREPARED_BELOW, 1);
@@ -319,38 +321,47 @@ static double prepared_seen(const void *context, double t)
     return aspi_exp_64(prepared_log(v->s, v->mu * v->mu + eta * eta) - v->base) * eta * eta * bracket;
 }
 
-static void prepared_tail_row(const prepared_source *s, double t0, double v, double *y)
+/* log eta below which nothing is seen: from far out down to past the peak. */
+static double prepared_seen_low(const prepared_view *view, double t)
+{
+    double here = prepared_seen(view, t), next;
+    for (; t > view->s->low; t -= 0.7, here = next) {
+        next = prepared_seen(view, t - 0.7);
+        if (next < here)
+            break;
+    }
+    return t - 8;
+}
+
+/* Returns log eta where PREPARED_CUT lies beyond. */
+static double prepared_tail_row(const prepared_source *s, double t0, double v, double *y)
 {
     const int n = PREPARED_TAIL_CELLS;
     const double h = PREPARED_TAIL_END / n;
     prepared_panels panels;
     prepared_view view;
     double root = v / (1 - v), q = root * root, power = PREPARED_POWER(q * q);
-    double unit, low;
+    double unit, below, shift;
     int i, panel = 0;
     view.s = s;
     view.mu = t0 * q;
     view.base = prepared_log(s, view.mu * view.mu);
     unit = 0.5 * aspi_log_64(view.mu * view.mu + t0 * t0);
-    low = s->low;
-    {
-        /* below the peak, and there a power */
-        double t = unit;
-        while (t > low && prepared_seen(&view, t) < prepared_seen(&view, t - 0.7))
-            t -= 0.7;
-        low = t - 6;
-    }
-    prepared_integrate(prepared_seen, &view, low, view.mu > 0 ? 5 : 3, aspi_max_64(s->high, unit + 10), 0.4,
-                       1e-17, &panels);
+    prepared_integrate(prepared_seen, &view, prepared_seen_low(&view, unit + 2), view.mu > 0 ? 5 : 3,
+                       aspi_max_64(s->high, unit + 10), 0.4, 1e-17, &panels);
+    below = aspi_log_64(2 * (panels.below[0] + panels.beyond[0])) - 3 * unit;
+    shift = PREPARED_STEEP(q * q) * below + unit;
     for (i = 1; i <= n; i++) {
         double z = i * h, rho = (z * z) * (z * z) * z;
-        y[i] = prepared_radius(&panels, prepared_seen, &view, rho, &panel) - power * aspi_log_64(rho)
-             - unit;
+        y[i] = prepared_radius(&panels, prepared_seen, &view, rho, &panel)
+             - power * aspi_log_64(rho) - shift;
     }
     y[0] = 4 * y[1] - 6 * y[2] + 4 * y[3] - y[4];
+    panel = 0;
+    return prepared_radius(&panels, prepared_seen, &view, -aspi_log_64(PREPARED_CUT), &panel);
 }
 
-static void prepared_tail_table(const prepared_source *s, double t0, double *out)
+static void prepared_tail_table(const prepared_source *s, double t0, double *edge, double *out)
 {
     const int n = PREPARED_TAIL_CELLS, m = PREPARED_VIEW_CELLS, row = PREPARED_TAIL_ROW;
     double y[(PREPARED_VIEW_CELLS + 1) * (PREPARED_TAIL_CELLS + 1)];
@@ -358,7 +369,8 @@ static void prepared_tail_table(const prepared_source *s, double t0, double *out
     int i;
     for (i = 0; i <= m; i++) {
         double *line = y + i * (n + 1);
-        prepared_tail_row(s, t0, PREPARED_VIEW_END * i / m, line);
+        double cut = prepared_tail_row(s, t0, PREPARED_VIEW_END * i / m, line);
+        *edge = i == 0 ? aspi_exp_64(cut) : *edge;
         prepared_spline(n, 1, line, 1, prepared_end_slope(line, 1), -prepared_end_slope(line + n, -1),
                         half + i * row, 1);
     }
@@ -390,6 +402,6 @@ asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
     out->table[PREPARED_SCALE2] = t0 * t0;
     prepared_normal_table(&s, out->table + PREPARED_NORMAL);
     prepared_area_tables(&s, t0, out->table);
-    prepared_tail_table(&s, t0, out->table + PREPARED_TAIL);
+    prepared_tail_table(&s, t0, &out->table[PREPARED_EDGE], out->table + PREPARED_TAIL);
     return ASP_OK;
 }

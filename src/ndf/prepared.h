@@ -47,8 +47,10 @@ asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
  *               the mean plane keeps its relative accuracy
  *     NORMAL    log(r/sqrt e) over z = e^(1/4), e = -log Q(r), Q(r) the share of slopes beyond r
  *     TAIL      what a view below the mean plane sees are slopes of radius sqrt(mu^2 + eta^2): over v and
- *               rho^(1/5), rho = -log of the share with larger eta, log(eta/sqrt(mu^2 + T0^2)) - p log rho with p =
- *               PREPARED_POWER: while P22 is constant eta starts like rho^(1/5), or rho^(1/3) for mu = 0 */
+ *               rho^(1/5), rho = -log of the share with larger eta, log(eta/sqrt(mu^2 + T0^2)) - p log rho - a BELOW
+ *               with p = PREPARED_POWER: while P22 is constant eta starts like rho^(1/5), or rho^(1/3) for
+ *               mu = 0; a = PREPARED_STEEP: far below the plane eta^5 = 7.5 rho mu^2 J/P22(mu) at first, so
+ *               that what is left varies little however steep the tail */
 #define PREPARED_AREA_CELLS 64
 #define PREPARED_BELOW_CELLS 180
 #define PREPARED_NORMAL_CELLS 40
@@ -56,15 +58,20 @@ asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
 #define PREPARED_TAIL_CELLS 25
 #define PREPARED_TAIL_ROW (PREPARED_TAIL_CELLS + 3)
 #define PREPARED_LEAST 0x1p-53          /* the least share that is told from none; e, rho up to 36.8 */
+/* Visible normals drawn from above the mean plane end at a radius beyond which less than this share lies: there
+ * the two parts of the sampler meet, which without an end would only do so at infinity. */
+#define PREPARED_CUT 0x1p-26
 #define PREPARED_Z_END 2.4625           /* (-log of it)^(1/4), rounded up */
 #define PREPARED_TAIL_END 2.0565        /* (-log of it)^(1/5), rounded up */
 #define PREPARED_VIEW_END .96875          /* v beyond this counts as this for TAIL */
 #define PREPARED_POWER(q2) (0.2 + (2.0 / 15) / (1 + 100 * (q2)))
+#define PREPARED_STEEP(q2) (0.2 * (q2) / (1 + (q2)))
 
 enum {
     PREPARED_LOG_MASS = PREPARED_OWN,
     PREPARED_SCALE,              /* T0 = twice the area seen edge-on, E|x|: the unit of slopes; */
     PREPARED_SCALE2,             /* its square */
+    PREPARED_EDGE,               /* radius beyond which PREPARED_CUT of what an edge-on view sees lies */
     PREPARED_AREA = PREPARED_OWN + 16,
     PREPARED_BELOW = PREPARED_AREA + PREPARED_AREA_CELLS + 3,
     PREPARED_NORMAL = PREPARED_BELOW + PREPARED_BELOW_CELLS + 3,

@@ -13,6 +13,7 @@
 #define prepared_tail_at ASP_NDF_NAME(_prepared_tail_at)
 #define prepared_far ASP_NDF_NAME(_prepared_far)
 #define prepared_below ASP_NDF_NAME(_prepared_below)
+#define prepared_deep ASP_NDF_NAME(_prepared_deep)
 #define prepared_view ASP_NDF_NAME(_prepared_view)
 #define prepared_plain ASP_NDF_NAME(_prepared_plain)
 #define prepared_tail ASP_NDF_NAME(_prepared_tail)
@@ -20,8 +21,10 @@
 #define prepared_begin ASP_NDF_NAME(_prepared_begin)
 #define prepared_facet ASP_NDF_NAME(_prepared_facet)
 #define prepared_turn ASP_NDF_NAME(_prepared_turn)
+#define prepared_turned ASP_NDF_NAME(_prepared_turned)
 #define prepared_step ASP_NDF_NAME(_prepared_step)
 #define PREPARED_BLOCK 128
+#define PREPARED_HUGE (ASP_PRECISION == 64 ? R(1e200) : R(1e18))
 #define PREPARED_TINY (ASP_PRECISION == 64 ? R(1e-200) : R(1e-24))
 #endif
 
@@ -80,11 +83,14 @@ ASP_FN asp_real prepared_below(const asp_shape *k, asp_real h, asp_real s2, asp_
          * aspi_exp(prepared_spline_at(k->table + PREPARED_BELOW, PREPARED_BELOW_CELLS, v));
 }
 
+/* Where `far` no longer is good enough relative to itself. */
+ASP_FN int prepared_deep(asp_real w, asp_real b) { return w < R(0.0) && R(2.0) * (w * w) > b; }
+
 /* sigma = max(w, 0) + s J(|w|/s). */
 ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
 {
     asp_real h = aspi_abs(w), b = s2 * k->table[PREPARED_SCALE2];
-    return w < R(0.0) ? prepared_below(k, h, s2, b) : w + prepared_far(k, h, b);
+    return prepared_deep(w, b) ? prepared_below(k, h, s2, b) : aspi_max(w, R(0.0)) + prepared_far(k, h, b);
 }
 
 /* The same in loops: views from below are rare, and a block without any skips their part. */
@@ -102,14 +108,15 @@ ASP_CLONES static void ndf_sigma_n(const asp_shape *k, size_t n, asp_real sign,
             asp_v3 v = aspi_view(k, aspi_vector(sign * wx[from + i], sign * wy[from + i], sign * wz[from + i]));
             w[i] = v.z;
             s2[i] = aspi_length2(v);
-            out[from + i] = v.z + prepared_far(k, aspi_abs(v.z), s2[i] * k->table[PREPARED_SCALE2]);
+            out[from + i] = aspi_max(v.z, R(0.0)) + prepared_far(k, aspi_abs(v.z), s2[i] * k->table[PREPARED_SCALE2]);
         }
         for (i = 0; i < count; i++)
             signs |= aspi_to_bits(w[i]);
         if (signs >> (8 * sizeof signs - 1))
             for (i = 0; i < count; i++) {
-                asp_real below = prepared_below(k, aspi_abs(w[i]), s2[i], s2[i] * k->table[PREPARED_SCALE2]);
-                out[from + i] = aspi_select(w[i] < R(0.0), below, out[from + i]);
+                asp_real b = s2[i] * k->table[PREPARED_SCALE2];
+                asp_real below = prepared_below(k, aspi_abs(w[i]), s2[i], b);
+                out[from + i] = aspi_select(prepared_deep(w[i], b), below, out[from + i]);
             }
     }
 }
@@ -165,16 +172,28 @@ ASP_FN asp_real prepared_tail(const asp_shape *k, asp_real h, asp_real b, asp_re
     asp_real power = R(0.2) + R(2.0 / 15.0) * b / aspi_max(b + R(100.0) * h2, PREPARED_TINY);
     asp_real w = prepared_tail_at(k, aspi_min(v, R(PREPARED_VIEW_END)) * R(PREPARED_VIEW_CELLS / PREPARED_VIEW_END),
                                   aspi_min(z, R(PREPARED_TAIL_END)) * R(PREPARED_TAIL_CELLS / PREPARED_TAIL_END));
-    return aspi_sqrt(h2 + b) * aspi_exp(power * l + w);
+    asp_real unit = prepared_spline_at(k->table + PREPARED_BELOW, PREPARED_BELOW_CELLS,
+                                       prepared_view(h, b) * R(PREPARED_BELOW_CELLS));
+    asp_real l2 = h2 + b, steep = R(0.2) * h2 / aspi_max(l2, PREPARED_TINY);
+    return aspi_sqrt(l2) * aspi_exp((power * l + steep * unit) + w);
+}
+
+/* c phi + g sin(phi) from c + g, which for c near -g is all that is left of the two. */
+ASP_FN asp_real prepared_turned(asp_real sum, asp_real g, asp_real phi, asp_real sine)
+{
+    asp_real x = phi * phi;
+    asp_real near = phi * x * (R(1.0 / 6.0) - x * (R(1.0 / 120.0) - x * (R(1.0 / 5040.0) - x * R(1.0 / 362880.0))));
+    return sum * phi - g * aspi_select(x < R(0.04), near, phi - sine);
 }
 
 /* Given the radius the azimuth has density proportional to c + g cos(phi) where that is positive, |phi| < end,
  * and the distribution function F = c phi + g sin(phi), to be brought to t: one step towards it by F's
- * parabola (Cauchy), which also finds the double zero of F' and F - t at the end. p: cos and sin of phi. */
-ASP_FN asp_real prepared_step(asp_real c, asp_real g, asp_real phi, asp_v2 p, asp_real t)
+ * parabola (Cauchy), which also finds the double zero of F' and F - t at the end. sum = c + g, p: cos and sin of phi. */
+ASP_FN asp_real prepared_step(asp_real sum, asp_real g, asp_real phi, asp_v2 p, asp_real t)
 {
-    asp_real miss = t - (g * p.y + c * phi);
-    asp_real slope = aspi_max(c + g * p.x, R(0.0));
+    asp_real miss = t - prepared_turned(sum, g, phi, p.y);
+    asp_real less = p.x > R(0.0) ? p.y * p.y / (R(1.0) + aspi_abs(p.x)) : R(1.0) - p.x;
+    asp_real slope = aspi_max(sum - g * less, R(0.0));
     asp_real root = slope * slope - R(2.0) * (g * p.y * miss);
     return R(2.0) * miss / aspi_max(slope + aspi_sqrt(aspi_max(root, R(0.0))), R(1e-12));
 }
@@ -191,21 +210,23 @@ ASP_FN asp_v2 prepared_turn(asp_real c, asp_real g, asp_real r, asp_real u)
     int all = c > g;
     asp_real end = aspi_atan(aspi_select(all, R(0.0), r), aspi_select(all, R(-1.0), -c));
     asp_real t = R(1.0) - R(2.0) * u, f = aspi_abs(t), w = aspi_sqrt(R(1.0) - f);
-    asp_real target = f * (a * end + aspi_select(all, R(0.0), r * scale));
+    asp_real sine_end = aspi_select(all, R(0.0), r * scale);
+    asp_real sum = aspi_select(c < R(0.0), sine_end * sine_end, a + b);
+    asp_real target = f * prepared_turned(sum, b, end, sine_end / aspi_max(b, R(0.25)));
     /* exact at both ends, and within 1 % for c = -g (2 sin(asin(f)/3)) and c = 0 (asin f) */
     asp_real k = R(0.9) + R(0.084) * aspi_min(a + a, R(0.0));
     asp_real phi = end * (R(1.0) - w * (k + (R(1.0) - k) * (w * w)));
     asp_real d, d2, sine, cosine;
     asp_v2 p = PREPARED_SINCOS(phi), out;
-    phi = aspi_min(phi + prepared_step(a, b, phi, p, target), end);
+    phi = aspi_min(phi + prepared_step(sum, b, phi, p, target), end);
     p = PREPARED_SINCOS(phi);
 #if ASP_PRECISION == 64
-    phi = aspi_min(phi + prepared_step(a, b, phi, p, target), end);
+    phi = aspi_min(phi + prepared_step(sum, b, phi, p, target), end);
     p = PREPARED_SINCOS(phi);
-    phi = aspi_min(phi + prepared_step(a, b, phi, p, target), end);
+    phi = aspi_min(phi + prepared_step(sum, b, phi, p, target), end);
     p = PREPARED_SINCOS(phi);
 #endif
-    d = aspi_min(prepared_step(a, b, phi, p, target), end - phi);
+    d = aspi_min(prepared_step(sum, b, phi, p, target), end - phi);
     d2 = d * d;
     sine = d * (R(1.0) - d2 * (R(1.0 / 6.0) - d2 * R(1.0 / 120.0)));
     cosine = R(1.0) - d2 * (R(0.5) - d2 * (R(1.0 / 24.0) - d2 * R(1.0 / 720.0)));
@@ -218,9 +239,11 @@ ASP_FN asp_v2 prepared_turn(asp_real c, asp_real g, asp_real r, asp_real u)
 /* A view and what is to be drawn from it: sigma = c + far. The share c of it, if c > 0, is drawn from all normals,
  * and the share `far` from those that a view below the mean plane sees: the integrals over the azimuth of
  * max(0, c + s x) and max(0, -c - s x), x a slope along the view, differ by 2 pi c. The first goes outwards with u1 and
- * the second comes back, so that the map is continuous; given the radius the azimuth is the same for both. */
+ * the second comes back, so that the map is continuous; given the radius the azimuth is the same for both. They
+ * meet at the radius PREPARED_EDGE, where both stop. */
 typedef struct prepared_draw {
     asp_real c, s, h, b;
+    asp_real most;               /* the largest eta */
     asp_real inner;              /* positive: from all normals, */
     asp_real e;                  /* e as in prepared_plain; */
     asp_real share, rest;        /* else as in prepared_tail */
@@ -237,7 +260,9 @@ ASP_FN prepared_draw prepared_begin(const asp_shape *k, asp_v3 v, asp_real u1)
     asp_real inner = up - u1 * sigma;
     asp_real left = aspi_max(inner / aspi_max(up, PREPARED_TINY), ASP_PRECISION == 64 ? R(0x1p-53) : R(0x1p-24));
     asp_real share = aspi_min(-inner * inv_far, R(1.0)), rest = aspi_min(down * sigma * inv_far, R(1.0));
+    asp_real edge = s * k->table[PREPARED_EDGE];
     prepared_draw d;
+    d.most = aspi_select(c > R(0.0), aspi_sqrt(aspi_max(edge * edge - c * c, R(0.0))), PREPARED_HUGE);
     d.c = c;
     d.s = s;
     d.h = aspi_abs(c);
@@ -267,11 +292,11 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
     prepared_draw d = prepared_begin(k, v, u1);
     asp_real x, z, root;
     if (d.inner > R(0.0)) {
-        x = prepared_plain(k, d.e);
+        x = aspi_min(prepared_plain(k, d.e), k->table[PREPARED_EDGE]);
         z = R(1.0);
         root = aspi_sqrt(aspi_max(d.s * x * (d.s * x) - d.c * d.c, R(0.0)));
     } else {
-        asp_real eta = prepared_tail(k, d.h, d.b, d.share, d.rest);
+        asp_real eta = aspi_min(prepared_tail(k, d.h, d.b, d.share, d.rest), d.most);
         x = aspi_sqrt(d.h * d.h + eta * eta);
         z = d.s;
         root = d.s * eta;
@@ -291,7 +316,7 @@ ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_rea
 {
     asp_real c[PREPARED_BLOCK], s[PREPARED_BLOCK], b[PREPARED_BLOCK], share[PREPARED_BLOCK];
     asp_real rest[PREPARED_BLOCK], inner[PREPARED_BLOCK], x[PREPARED_BLOCK], z[PREPARED_BLOCK];
-    asp_real root[PREPARED_BLOCK], far[4][PREPARED_BLOCK];
+    asp_real root[PREPARED_BLOCK], most[PREPARED_BLOCK], far[5][PREPARED_BLOCK];
     int place[PREPARED_BLOCK];
     size_t from, i, count, tails;
     for (from = 0; from < n; from += PREPARED_BLOCK) {
@@ -304,8 +329,9 @@ ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_rea
             b[i] = d.b;
             share[i] = d.share;
             rest[i] = d.rest;
+            most[i] = d.most;
             inner[i] = d.inner;
-            x[i] = prepared_plain(k, d.e);
+            x[i] = aspi_min(prepared_plain(k, d.e), k->table[PREPARED_EDGE]);
             z[i] = R(1.0);
             root[i] = aspi_sqrt(aspi_max(d.s * x[i] * (d.s * x[i]) - d.c * d.c, R(0.0)));
         }
@@ -319,9 +345,10 @@ ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_rea
             far[1][i] = b[j];
             far[2][i] = share[j];
             far[3][i] = rest[j];
+            far[4][i] = most[j];
         }
         for (i = 0; i < tails; i++)
-            far[0][i] = prepared_tail(k, far[0][i], far[1][i], far[2][i], far[3][i]);
+            far[0][i] = aspi_min(prepared_tail(k, far[0][i], far[1][i], far[2][i], far[3][i]), far[4][i]);
         for (i = 0; i < tails; i++) {
             int j = place[i];
             x[j] = aspi_sqrt(c[j] * c[j] + far[0][i] * far[0][i]);

@@ -36,7 +36,7 @@ static asp_status sgd_prepare(asp_ndf *out, asp_error *err)
 }
 
 static const asp_param sgd_params[] = {
-    { "alpha", 1e-5, 0, 10, 0.1, "about the squared slope" },
+    { "alpha", 1e-4, 0, 4, 0.1, "about the squared slope" },
     { "gamma", 0, 0, 4, 0.5, "a sharper peak: 0 Beckmann, Bagher's fits up to 1.8" }
 };
 

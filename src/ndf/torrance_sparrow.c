@@ -32,7 +32,7 @@ static aspi_log_density torrance_sparrow_log_density;
 static asp_status torrance_sparrow_prepare(asp_ndf *out, asp_error *err)
 {
     double alpha = out->shape[0];
-    out->table[0] = 1 / alpha;
+    out->table[0] = 1 / (alpha * alpha);
     out->table[1] = 1 / (ASP_PI * torrance_sparrow_integral(alpha));
     return aspi_prepared_make(out, torrance_sparrow_log_density, err);
 }
@@ -71,8 +71,8 @@ ASP_RECORD asp_model asp_model_torrance_sparrow = {
 /* D = e^-(theta/alpha)^2 / N (Hoffman 2013, In[24]). */
 ASP_FN asp_real exponent(const asp_shape *k, asp_real r2, asp_real z2)
 {
-    asp_real x = aspi_angle(aspi_sqrt(r2), aspi_sqrt(z2)) * k->table[0];
-    return x * x;
+    asp_real theta = aspi_angle(aspi_sqrt(r2), aspi_sqrt(z2));
+    return theta * theta * k->table[0];
 }
 
 ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
