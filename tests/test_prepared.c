@@ -145,7 +145,7 @@ static void check_sigma(const asp_ndf *k, const char *name)
             below = larger(below, fabs(down / sum - 1));
         else if (sum > 1e-280)
             far = larger(far, fabs(down / sum - 1));
-        if (!(up >= mu && down >= 0))
+        if (!(up >= mu * (1 - 4e-16) && down >= 0))
             above = INFINITY;
     }
     report("sigma from above, relative", name, above, 1e-6);

@@ -79,8 +79,8 @@ ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
 {
     asp_real h2 = r2 + z2, z = aspi_sqrt(z2), h = aspi_sqrt(h2);
     asp_real x = r2 / (h2 + h * z);                 /* 1 - cos */
-    asp_real d = aspi_exp(-(k->shape[1] * aspi_log1p(k->shape[0] * x)));
-    return d * k->table[1] / (h2 * h2);
+    asp_real d = aspi_exp(R(-0.5) * (k->shape[1] * aspi_log1p(k->shape[0] * x)));
+    return d * k->table[1] * d / (h2 * h2);           /* its square alone may underflow where D does not */
 }
 
 #include "prepared_kernel.h"
