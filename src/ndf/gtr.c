@@ -50,7 +50,7 @@ static asp_status gtr_prepare(asp_ndf *out, asp_error *err)
 
 static const asp_param gtr_params[] = {
     { "alpha", 1e-3, 0, 4, 0.3, "roughness; 1 the sphere" },
-    { "gamma", 0, 1, 5, 1.5, "tails: 1 Berry, 2 GGX" }
+    { "gamma", 0, 1, 1e4, 1.5, "tails: 1 Berry, 2 GGX" }
 };
 
 #define ASP_NDF gtr
@@ -67,8 +67,8 @@ static double gtr_log_density(const asp_ndf *k, double r2)
     return -gtr_exponent_64(k, r2, 1) - 2 * aspi_log1p_64(r2);
 }
 
-/* sigma: 1e-6 from above; gamma = 5, alpha = 0.001 has 2.4e-5 where a view from below sees 1e-24. gamma ends
- * where the plateau of D beside the peak becomes too deep for the tables. */
+/* Not in the table: its visible normals and sigma far below hold for gamma up to 5 (sigma: 1e-6 from above, 2.4e-5
+ * where a view from below sees 1e-24); beyond, the plateau of D beside the peak is too deep for the tables. */
 ASP_RECORD asp_model asp_model_gtr = {
     "gtr", NULL, "Generalised Trowbridge-Reitz (GTR)",
     "Burley 2012; Ribardiere et al. 2017, eq. 8",
