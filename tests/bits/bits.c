@@ -283,7 +283,11 @@ int main(int argc, char **argv)
                     continue;
                 snprintf(end, sizeof more - (size_t)(end - more), ",%s=%.10g", p->name, value);
             }
-            strcpy(spec, list[i]);
+            /* where alpha is the model's own number, the map's is alpha_x and alpha_y */
+            if ((*m)->own_scale && strncmp(list[i], "alpha=", 6) == 0)
+                snprintf(spec, sizeof spec, "alpha_x=%.40s,alpha_y=%.40s", list[i] + 6, list[i] + 6);
+            else
+                strcpy(spec, list[i]);
             strcat(spec, more);
             state = 12345u + (uint64_t)i;
             refused += one_value(*m, spec, verbose, wide, narrow);
