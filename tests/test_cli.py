@@ -140,7 +140,8 @@ def list_ranges():
         for name in [model["name"]] + ([model["also"]] if model["also"] else []):
             check(accepted(name)[0], "%s: defaults are refused" % name)
         # a range that cannot be reached because the product of two limits is refused is a mistake
-        for p in maps[model["map"]] + model["parameters"]:
+        own = {p["name"] for p in model["parameters"]}      # hides the map's key of that name
+        for p in [p for p in maps[model["map"]] if p["name"] not in own] + model["parameters"]:
             key = p["name"]
             for end, outwards in (("low", -math.inf), ("high", math.inf)):
                 value, refused = float(p[end]), p[end + "_refused"]
