@@ -257,7 +257,7 @@ static int answer_one(const cmd_args *args, const asp_ndf *ndf, const char *to, 
     char name[64];
     const asp_model *model = first_word(to, name) ? asp_find_model(NULL, name) : NULL;
     const asp_convention *convention = asp_find_convention(to);
-    answer a = { "", list ? json_object() : NULL, (int)cmd_integer(args, "digits") };
+    answer a = { "", NULL, (int)cmd_integer(args, "digits") };
     asp_error err;
     if (model)
         return nearest(args, ndf, to, model, list);
@@ -273,6 +273,8 @@ static int answer_one(const cmd_args *args, const asp_ndf *ndf, const char *to, 
         names[used] = NULL;
         return cmd_unknown("--to: unknown", name, names);
     }
+    if (list)
+        a.values = json_object();
     asp_status status = represent(ndf, to, &a, &err);
     if (status && !all) {
         json_decref(a.values);
