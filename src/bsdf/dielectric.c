@@ -22,11 +22,7 @@
 static asp_status dielectric_parse(aspi_spec *spec, asp_material *out, asp_error *err)
 {
     double eta = 1.5, thin = 0.0;
-    asp_status s = aspi_spec_number(spec, "eta", &eta, NULL, err);
-    if (!s && !(eta >= 0.01 && eta <= 100.0)) {
-        asp_fail_range(err, "eta", eta, 0.01, 0, 100.0);
-        s = aspi_spec_blame(spec, "eta", ASP_EINVAL, err);
-    }
+    asp_status s = aspi_spec_ranged(spec, "eta", 0.01, 0, 100.0, &eta, NULL, err);
     if (!s)
         s = aspi_spec_number(spec, "thin", &thin, NULL, err);
     if (!s && thin != 0.0 && thin != 1.0) {

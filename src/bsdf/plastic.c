@@ -43,11 +43,7 @@ static asp_status plastic_parse(aspi_spec *spec, asp_material *out, asp_error *e
     out->a.r = out->a.g = out->a.b = 0.5;
     s = aspi_spec_colour(spec, "albedo", 0.0, 0, 1.0, &out->a, NULL, err);
     if (!s)
-        s = aspi_spec_number(spec, "eta", &eta, NULL, err);
-    if (!s && !(eta > 1.0 && eta <= 10.0)) {
-        asp_fail_range(err, "eta", eta, 1.0, 1, 10.0);
-        s = aspi_spec_blame(spec, "eta", ASP_EINVAL, err);
-    }
+        s = aspi_spec_ranged(spec, "eta", 1.0, 1, 10.0, &eta, NULL, err);
     out->fresnel = ASPI_FRESNEL_DIELECTRIC;
     out->c.r = out->c.g = out->c.b = eta;
     return s;

@@ -34,6 +34,10 @@ aspi_item *aspi_spec_find(aspi_spec *spec, const char *key);
 asp_status aspi_spec_number(aspi_spec *spec, const char *key, double *out, int *found,
                             asp_error *err);
 
+/* The same for a number within [low, high]. */
+asp_status aspi_spec_ranged(aspi_spec *spec, const char *key, double low, int low_open, double high,
+                            double *out, int *found, asp_error *err);
+
 /* One number or r/g/b, each within [low, high]. */
 asp_status aspi_spec_colour(aspi_spec *spec, const char *key, double low, int low_open,
                             double high, asp_rgb *out, int *found, asp_error *err);

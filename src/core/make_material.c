@@ -151,18 +151,6 @@ static asp_status parse_bare(aspi_spec *spec, double initial_eta, asp_material *
     return ASP_OK;
 }
 
-/* A number of the spec within [low, high]. */
-static asp_status parse_number(aspi_spec *spec, const char *key, double low, int low_open, double high,
-                               double *out, int *found, asp_error *err)
-{
-    asp_status s = aspi_spec_number(spec, key, out, found, err);
-    if (!s && *found && !(*out <= high && (low_open ? *out > low : *out >= low))) {
-        asp_fail_range(err, key, *out, low, low_open, high);
-        s = aspi_spec_blame(spec, key, ASP_EINVAL, err);
-    }
-    return s;
-}
-
 asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material *out,
                               asp_error *err)
 {
@@ -171,9 +159,9 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
     int has_film, has_eta;
     asp_status s = parse_bare(spec, initial_eta, out, &metal, err);
     if (!s)
-        s = parse_number(spec, "film", 0.0, 1, 1e4, &thickness, &has_film, err);
+        s = aspi_spec_ranged(spec, "film", 0.0, 1, 1e4, &thickness, &has_film, err);
     if (!s)
-        s = parse_number(spec, "film_eta", 1.0, 0, 10.0, &film_eta, &has_eta, err);
+        s = aspi_spec_ranged(spec, "film_eta", 1.0, 0, 10.0, &film_eta, &has_eta, err);
     if (s || !(has_film || has_eta))
         return s;
     if (!has_film)

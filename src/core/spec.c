@@ -190,6 +190,24 @@ asp_status aspi_spec_number(aspi_spec *spec, const char *key, double *out, int *
     return ASP_OK;
 }
 
+asp_status aspi_spec_ranged(aspi_spec *spec, const char *key, double low, int low_open, double high,
+                            double *out, int *found, asp_error *err)
+{
+    double value = *out;
+    int has;
+    asp_status s = aspi_spec_number(spec, key, &value, &has, err);
+    if (found)
+        *found = has;
+    if (s || !has)
+        return s;
+    if (!(value <= high && (low_open ? value > low : value >= low))) {
+        asp_fail_range(err, key, value, low, low_open, high);
+        return aspi_spec_blame(spec, key, ASP_EINVAL, err);
+    }
+    *out = value;
+    return ASP_OK;
+}
+
 asp_status aspi_spec_colour(aspi_spec *spec, const char *key, double low, int low_open,
                             double high, asp_rgb *out, int *found, asp_error *err)
 {
