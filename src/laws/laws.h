@@ -135,7 +135,8 @@ typedef struct aspi_histogram {
 /* Per unit solid angle of facets, at facet m: a probability density and another value. */
 typedef void aspi_facet_function(const void *context, asp_vec3 m, double *density, double *value);
 
-void aspi_histogram_edges(aspi_histogram *h, double *radii, size_t count, double phi0);
+/* No ring but the open one reaches beyond `most`. */
+void aspi_histogram_edges(aspi_histogram *h, double *radii, size_t count, double phi0, double most);
 /* The same for a surface counted in cells: blocks of half cells, their edges inside the lattice's. */
 void aspi_histogram_blocks(aspi_histogram *h, const asp_lattice *lattice);
 void aspi_histogram_add(aspi_histogram *h, const asp_ndf *ndf, asp_vec3 m, double weight);

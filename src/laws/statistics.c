@@ -87,18 +87,19 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-void aspi_histogram_edges(aspi_histogram *h, double *radii, size_t count, double phi0)
+void aspi_histogram_edges(aspi_histogram *h, double *radii, size_t count, double phi0, double most)
 {
     static const double tail[3] = { 0.97, 0.99, 0.997 };
     int i;
     memset(h, 0, sizeof *h);
     h->phi0 = phi0;
     qsort(radii, count, sizeof *radii, ascending);
+    while (count > 1 && !(radii[count - 1] <= most))
+        count--;
     for (i = 0; i < ASPI_RINGS - 1; i++) {
         double share = i < 12 ? (i + 1) / 12.6 : tail[i - 12];
-        double edge = radii[(size_t)(share * (double)count)];
+        double edge = fmin(radii[(size_t)(share * (double)count)], most);
         double least = i > 0 ? h->edge[i - 1] * 1.0001 : 1e-30;
-        edge = edge < 1e60 ? edge : 1e60;
         h->edge[i] = edge > least ? edge : least;
     }
 }
