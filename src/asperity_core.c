@@ -78,6 +78,10 @@
 #undef ASP_PRECISION
 #include "ndf/prepared.c"
 #undef ASP_PRECISION
+#include "ndf/prepared_area.c"
+#undef ASP_PRECISION
+#include "ndf/prepared_views.c"
+#undef ASP_PRECISION
 #include "ndf/sgd.c"
 #undef ASP_PRECISION
 #include "ndf/student_forms.c"

@@ -1,0 +1,62 @@
+/* prepared_make.h - what the files that prepare a surface share
+ *
+ * prepared.c: splines, integrals over the radius, aspi_prepared_make; prepared_area.c: the tables of the
+ * projected area; prepared_views.c: those of the samplers. */
+#ifndef ASPI_PREPARED_MAKE_H
+#define ASPI_PREPARED_MAKE_H
+
+#include "ndf/prepared.h"
+
+/* The density under preparation. */
+typedef struct prepared_source {
+    const asp_ndf *k;
+    aspi_log_density *f;
+    double log_mass;             /* of e^f */
+    double low, high;            /* log r below which there is nothing, above which P22 is a power */
+} prepared_source;
+
+typedef double prepared_integrand(const void *context, double t);
+
+#define PREPARED_PANELS 400
+
+typedef struct prepared_panels {
+    int count;
+    double edge[PREPARED_PANELS + 1];        /* log of the radius */
+    double value[PREPARED_PANELS + 1];       /* integrand there, per unit of the logarithm */
+    double mass[PREPARED_PANELS];
+    double below[PREPARED_PANELS + 1], beyond[PREPARED_PANELS + 1];   /* cumulated */
+} prepared_panels;
+
+double aspi_prepared_log(const prepared_source *s, double r2);
+
+/* Coefficients, divided by 6, of the cubic B-spline on n cells of width h with values y[0 ... n],
+ * y[j] = value[j step], and slopes d0, d1 at the ends: out[0 ... n + 2], out_step apart. */
+void aspi_prepared_spline(int n, double h, const double *value, int step, double d0, double d1, double *out,
+                          int out_step);
+/* Slope at the first of five equidistant values, one cell apart; step < 0 looks back, and the slope
+ * is then that of the way back. */
+double aspi_prepared_end_slope(const double *y, int step);
+
+/* From t = `low`, below which the integrand is radius^power, up to where less than `least` of the sum is left or
+ * t = high; there the integrand goes on as a power of the radius. */
+void aspi_prepared_integrate(prepared_integrand *g, const void *context, double low, double power, double high,
+                             double longest, double least, prepared_panels *out);
+/* log of the radius where -log of the share beyond is rho. `panel` is where to look from; it moves on with
+ * growing rho. */
+double aspi_prepared_radius(const prepared_panels *p, prepared_integrand *g, const void *context, double rho,
+                            int *panel);
+/* r^2 P22 2 pi: mass per unit of t = log r; `context` is the source. */
+double aspi_prepared_ring(const void *context, double t);
+/* The panels of all slopes. */
+void aspi_prepared_rings(const prepared_source *s, prepared_panels *out);
+
+/* J(0), half the unit of slopes. */
+double aspi_prepared_edge_on(const prepared_source *s);
+/* AREA and BELOW. */
+void aspi_prepared_area_tables(const prepared_source *s, double t0, double *table);
+/* NORMAL. */
+void aspi_prepared_normal_table(const prepared_source *s, double *out);
+/* TAIL; *edge is PREPARED_EDGE's. */
+void aspi_prepared_tail_table(const prepared_source *s, double t0, double *edge, double *out);
+
+#endif
