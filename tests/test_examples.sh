@@ -11,7 +11,22 @@ cmake --install "$build" --prefix "$scratch/prefix" >"$scratch/log" 2>&1 ||
     { cat "$scratch/log"; echo "0 passed, 1 failed"; exit 1; }
 PKG_CONFIG_PATH=$(dirname "$(find "$scratch/prefix" -name asperity.pc)")
 export PKG_CONFIG_PATH
-mkdir "$scratch/tree"
+# The core is the same one file in most of the commands: compiled once, it stands in for its source.
+mkdir "$scratch/tree" "$scratch/bin"
+compiler=$(command -v cc)
+"$compiler" -O2 -I"$source/include" -I"$source/src" -c "$source/src/asperity_core.c" -o "$scratch/core.o"
+cat >"$scratch/bin/cc" <<EOF
+#!/bin/sh
+n=\$#
+for a; do
+    [ "\$a" != src/asperity_core.c ] || a=$scratch/core.o
+    set -- "\$@" "\$a"
+done
+shift "\$n"
+exec "$compiler" "\$@"
+EOF
+chmod +x "$scratch/bin/cc"
+PATH=$scratch/bin:$PATH
 cd "$scratch/tree"
 ln -s "$source/include" "$source/src" "$source/examples" .
 

@@ -23,6 +23,13 @@ static const asp_fit_result *find(const asp_fit_result *r, size_t n, const char 
     return NULL;
 }
 
+/* Instrumented code is slower, and has a smaller job. */
+#ifdef __SANITIZE_ADDRESS__
+#define MOST_FILES 1
+#else
+#define MOST_FILES 100
+#endif
+
 static void one(const char *path, const char *name, const char *loss, size_t at)
 {
     asp_error err;
@@ -77,9 +84,10 @@ int main(void)
         if (!end || strcmp(end, ".bsdf"))
             continue;
         snprintf(path, sizeof path, "%s/data/rgl/%s", shared(), entry->d_name);
+        if (files++ >= MOST_FILES)
+            continue;
         one(path, entry->d_name, "nad", 0);
         one(path, entry->d_name, "log", 1);
-        files++;
     }
     closedir(folder);
     snprintf(path, sizeof path, "%s/data/measured/merl_subset/aluminium_inplane_lumos.csv", shared());

@@ -99,7 +99,12 @@ static void add_model(const asp_model *model, size_t stride)
 int main(int argc, char **argv)
 {
     const char *longer = getenv("ASPERITY_LONG");
-    size_t stride = longer ? 1 : 3, i, passed = 0, failed = 0;
+#ifdef __SANITIZE_ADDRESS__
+    const size_t usual = 7;
+#else
+    const size_t usual = 3;
+#endif
+    size_t stride = longer ? 1 : usual, i, passed = 0, failed = 0;
     pthread_t thread;
     int threaded;
     options = asp_laws_options_default();
