@@ -45,7 +45,7 @@ void aspi_law_refraction(aspi_trial *t)
             asp_vec3 wi = k & 1 ? flip(v->w) : v->w;
             asp_bsdf_sample s = asp_sample_lobe(&rad, wi, aspi_uniform(t), aspi_uniform(t), aspi_uniform(t));
             double pdf = asp_pdf(&rad, wi, s.wo), steps, side, a, b;
-            if (!(s.weight.r > 0) || pdf < 1e-200)
+            if (!(s.weight.r > 1e-100) || pdf < 1e-200)      /* products of two such numbers are lost */
                 continue;
             steps = steps_of(t, wi, s.wo, cases[i].thin ? 1 : cases[i].eta);
             if (steps > 1e-3)

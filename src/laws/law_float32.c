@@ -125,9 +125,9 @@ static double sigma_deviation(const aspi_trial *t, asp_vec3 w, double found)
     step = EPS * (fabs(w.z) + fabs(map->tx * w.x) + fabs(map->ty * w.y));
     if (!t->skewed)
         step = 0;
-    /* and of its length where the map is turned: M^T w_xy */
-    lost = EPS * fmax(0, hypot(fabs(map->m00 * w.x) + fabs(map->m10 * w.y),
-                               fabs(map->m01 * w.x) + fabs(map->m11 * w.y)) - s);
+    /* and of its length where the map is turned: M^T w_xy; and half an ulp, as of a record's arguments */
+    lost = EPS * fmax(s / 2, hypot(fabs(map->m00 * w.x) + fabs(map->m10 * w.y),
+                                   fabs(map->m01 * w.x) + fabs(map->m11 * w.y)) - s / 2);
     v.x = fmax(0, s - lost); /* sigma grows with both */
     v.z = h - step;
     low = asp_sigma(&t->standard, v);

@@ -35,6 +35,15 @@ static double error2(const mean *m, double n)
     return fmax(m->sum2 / n - v * v, 0) / n;
 }
 
+/* Carried by less than 30 samples of equal size. */
+static int few(const mean *m) { return m->sum * m->sum < 30 * m->sum2 || !(m->sum > 0); }
+
+static void join(mean *into, const mean *m)
+{
+    into->sum += m->sum;
+    into->sum2 += m->sum2;
+}
+
 /* The mirror image in the walls that close a skewed surface. */
 static asp_vec3 in_wall(const aspi_trial *t, asp_vec3 w)
 {
@@ -94,7 +103,8 @@ static void try_material(aspi_trial *t, const asp_material *mat, const asp_mater
     for (size_t k = 0; k < t->view_count; k += 3) {
         asp_vec3 wi = t->views[k].w;
         mean total = { 0, 0 }, ends[CELLS] = { { 0, 0 } }, parts[CELLS] = { { 0, 0 } };
-        double z, worst = 0, se;
+        mean rest[2] = { { 0, 0 }, { 0, 0 } };
+        double z, worst = 0, found[2] = { 0, 0 }, se;
         int at = 0;
         for (size_t i = 0; i < n; i++) {
             asp_bsdf_sample s = asp_walk_sample(mat, wi, next, t);
@@ -114,17 +124,28 @@ static void try_material(aspi_trial *t, const asp_material *mat, const asp_mater
         if (compare)
             aspi_find(t, fabs(value(&total, (double)n) - 1), 1e-3 + 6 * se, "%s, %s: furnace %.5f +- %.5f",
                       name, t->views[k].name, value(&total, (double)n), se);
-        for (int c = 0; c < CELLS; c++) {
-            double a = value(&ends[c], (double)n), b = value(&parts[c], (double)n);
-            double s2 = error2(&ends[c], (double)n) + error2(&parts[c], (double)n);
-            if (!compare || a * (double)n < 50)
+        /* a cell that a few paths carry has no variance to speak of, and is counted with the others like it */
+        for (int c = 0; c < CELLS && compare; c++)
+            if (few(&ends[c]) || few(&parts[c])) {
+                join(&rest[0], &ends[c]);
+                join(&rest[1], &parts[c]);
+                ends[c] = parts[c] = (mean){ 0, 0 };
+            }
+        for (int c = 0; c <= CELLS && compare; c++) {
+            const mean *a = c < CELLS ? &ends[c] : &rest[0], *b = c < CELLS ? &parts[c] : &rest[1];
+            double s2 = error2(a, (double)n) + error2(b, (double)n);
+            if (few(a) || few(b))
                 continue;
-            z = fabs(a - b) / sqrt(s2 + 1e-12);
-            if (z > worst)
-                worst = z, at = c;
+            z = fabs(value(a, (double)n) - value(b, (double)n)) / sqrt(s2 + 1e-12);
+            if (z > worst) {
+                worst = z;
+                at = c;
+                found[0] = value(a, (double)n);
+                found[1] = value(b, (double)n);
+            }
         }
         aspi_find(t, worst, 5.5, "%s, %s: ends against eval, cell %d: %.5f, %.5f", name, t->views[k].name, at,
-                  value(&ends[at], (double)n), value(&parts[at], (double)n));
+                  found[0], found[1]);
         if (aspi_tick(t, (double)k / (double)t->view_count))
             return;
     }
