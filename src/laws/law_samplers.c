@@ -116,7 +116,7 @@ static double test_stream(aspi_trial *t, const sampling *s, const char *name)
 {
     aspi_histogram *h = (aspi_histogram *)malloc(sizeof *h);
     block *b = (block *)malloc(sizeof *b);
-    double *radii = (double *)malloc(PILOT * sizeof *radii), p = 0, phi;
+    double *radii = (double *)malloc(PILOT * sizeof *radii), p = 0, phi, mean = 0;
     size_t done, i;
     if (!h || !b || !radii) {
         t->no_memory = 1;
@@ -130,12 +130,13 @@ static double test_stream(aspi_trial *t, const sampling *s, const char *name)
             aspi_standard_polar(s->ndf, m, &radii[done + i], &phi);
             if (!(radii[done + i] == radii[done + i]))
                 radii[done + i] = INFINITY;
+            mean += b->red[i] / PILOT;
         }
     }
     aspi_histogram_edges(h, radii, PILOT, s->view ? standard_azimuth(s->ndf, s->view->w) : 0.1, farthest(s));
     if (t->planar)
         aspi_histogram_blocks(h, &t->lattice);
-    aspi_histogram_integrate(h, t, stated, s);
+    aspi_histogram_integrate(h, t, stated, s, s->horizon_only ? fmin(fmax(30 * mean, 1e-200), 1) : 1);
     for (done = 0; done < t->samples; done += BLOCK) {
         size_t n = t->samples - done < BLOCK ? t->samples - done : BLOCK;
         draw(t, s, n, b);
