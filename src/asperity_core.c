@@ -40,6 +40,8 @@
 #undef ASP_PRECISION
 #include "core/parse.c"
 #undef ASP_PRECISION
+#include "core/pieces.c"
+#undef ASP_PRECISION
 #include "core/sggx.c"
 #undef ASP_PRECISION
 #include "core/spec.c"

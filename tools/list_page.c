@@ -12,7 +12,7 @@
 
 #define SLOPES "in closed form"
 #define OF_STUDENT "that of `student_t`, an incomplete beta function by a series fitted to the gamma"
-#define PREPARED "by quadrature when the distribution is made, then a cubic spline"
+#define PREPARED "by quadrature when the distribution is made, then polynomials by pieces"
 #define REJECTION_FREE "exact, a map of two uniform numbers without rejection"
 #define BY_TABLE "the radius of the slope by tables made with the distribution, its azimuth by a few steps of " \
     "Newton's; a continuous map of two uniform numbers without rejection"

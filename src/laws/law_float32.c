@@ -200,8 +200,7 @@ static void compare_views(aspi_trial *t)
         rounding = asp_sigma(t->ndf, w) < 1e-6 * s * t->scale ? 1e-4 : 2e-6;
         /* on the way there it carries the rounding of its exponent, as densities do */
         if (h < 0 && t->ndf->model->own_scale)
-            rounding += 3e-7 * fmax(0, log(s * t->scale / asp_sigma(t->ndf, w)))
-                      + 4 * t->ndf->model->area_error; /* what float64 itself may be off by */
+            rounding += 3e-7 * fmax(0, log(s * t->scale / asp_sigma(t->ndf, w)));
         aspi_find(t, sigma_deviation(t, w, found), rounding,
                   "sigma, w = (%.7g, %.7g, %.7g): %.9g, float64 %.9g", w.x, w.y, w.z, found,
                   asp_sigma(t->ndf, w));

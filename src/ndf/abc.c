@@ -67,7 +67,7 @@ static const asp_param abc_params[] = {
 
 ASP_RECORD asp_model asp_model_abc = {
     "abc", NULL, "ABC distribution", "Low, Kronander, Ynnerman, Unger 2012; Hoffman 2013",
-    ASP_KEYS_SLOPE, 1, 1, 1e-6, abc_params, 2, abc_prepare, ASP_NDF_OPS(abc)
+    ASP_KEYS_SLOPE, 1, 1, 3e-7, abc_params, 2, abc_prepare, ASP_NDF_OPS(abc)
 };
 #undef ASP_NDF
 

@@ -3,59 +3,77 @@
 
 #define ASP_PRECISION 64
 #include "asperity/elementary.h"
+#include "core/pieces.h"
 
-/* x^2 and x^2 (x - atan x) for x = e^(j h), all j that occur. */
+/* The trapezoidal rule in log rho converges fast where the density is smooth; bent ones take a finer step. */
 #define AREA_STEP 0.2
+#define AREA_FINER 4
 #define AREA_FIRST (-80)
 #define AREA_LAST 400
 
+static int prepared_finer(const prepared_source *s) { return s->k->table[PREPARED_IS_BENT] > 0 ? AREA_FINER : 1; }
+
+/* x^2 and x^2 (x - atan x) for x = e^(j h), j = first + i. */
 typedef struct prepared_kernels {
-    double x2[AREA_LAST - AREA_FIRST + 1], weight[AREA_LAST - AREA_FIRST + 1];
+    int first, last;
+    double step, x2[AREA_FINER * (AREA_LAST - AREA_FIRST) + 1], weight[AREA_FINER * (AREA_LAST - AREA_FIRST) + 1];
 } prepared_kernels;
 
-static void prepared_kernel(prepared_kernels *out)
+static void prepared_kernel(int finer, prepared_kernels *out)
 {
     int j;
-    for (j = AREA_FIRST; j <= AREA_LAST; j++) {
-        double x = aspi_exp_64(AREA_STEP * j), z = x * x;
-        out->x2[j - AREA_FIRST] = z;
-        out->weight[j - AREA_FIRST] = z * (x < 0.1
+    out->step = AREA_STEP / finer;
+    out->first = finer * AREA_FIRST;
+    out->last = finer * AREA_LAST;
+    for (j = out->first; j <= out->last; j++) {
+        double x = aspi_exp_64(out->step * j), z = x * x;
+        out->x2[j - out->first] = z;
+        out->weight[j - out->first] = z * (x < 0.1
             ? x * z * (1.0 / 3 - z * (1.0 / 5 - z * (1.0 / 7 - z * (1.0 / 9 - z / 11))))
             : x - aspi_atan_64(x, 1));
     }
 }
 
-/* log of J(mu)/P22(mu): J = integral of 2 P22(mu^2 + rho^2) rho^2 (rho - mu atan(rho/mu)) d log rho by the
- * trapezoidal rule, rho = mu e^(j h). Before the first term and beyond log rho = `high` the integrand is taken
- * for a power, whose terms are a geometric series. */
-static double prepared_log_far(const prepared_source *s, const prepared_kernels *kernel, double mu)
+/* log J(mu): J = integral of 2 P22(mu^2 + rho^2) rho^2 (rho - mu atan(rho/mu)) d log rho by the trapezoidal rule,
+ * rho = mu e^(j h). Before the first term and beyond log rho = `high` the integrand is taken for a power, whose
+ * terms are a geometric series. */
+static double prepared_log_area(const prepared_source *s, const prepared_kernels *kernel, double mu)
 {
     double m2 = mu * mu, base = aspi_prepared_log(s, m2), sum = 0, term = 0, last = 0, first = 0;
-    double t = aspi_log_64(mu), end = aspi_max_64(s->high, t + 7);
-    int j, start = (int)((s->low + 13 - t) / AREA_STEP);
-    start = start < AREA_FIRST ? AREA_FIRST : start;
-    for (j = start; j <= AREA_LAST; j++) {
-        const int i = j - AREA_FIRST;
+    double t = aspi_log_64(mu), end = aspi_max_64(s->high, t + 7) + 4;
+    int j, start = (int)((s->low + 13 - t) / kernel->step);
+    start = start < kernel->first ? kernel->first : start;
+    for (j = start; j <= kernel->last; j++) {
+        const int i = j - kernel->first;
+        double here = aspi_prepared_log(s, m2 + m2 * kernel->x2[i]);
+        if (here > base + 200) {              /* the peak lies farther out: count from here on */
+            double less = aspi_exp_64(base - here);
+            sum *= less;
+            term *= less;
+            first *= less;
+            base = here;
+        }
         last = term;
-        term = aspi_exp_64(aspi_prepared_log(s, m2 + m2 * kernel->x2[i]) - base) * kernel->weight[i];
+        term = aspi_exp_64(here - base) * kernel->weight[i];
         sum += term;
         if (j == start)
             first = term;
         if (j == start + 1 && term > first)
             sum += first * first / (term - first);
-        if (term < last && (term < 1e-10 * sum || t + AREA_STEP * j > end))
+        if (term < last && (term < 1e-10 * sum || t + kernel->step * j > end))
             break;
     }
     if (term > 0 && term < last)
         sum += term * term / (last - term);
-    return aspi_log_64(2 * AREA_STEP * m2 * mu * sum);
+    return base + aspi_log_64(2 * kernel->step * m2 * mu * sum);
 }
 
 /* The same at mu = 0: 2 P22 rho^3 per log rho. */
 double aspi_prepared_edge_on(const prepared_source *s)
 {
+    const double step = AREA_STEP / prepared_finer(s);
     double sum = 0, term = 0, last = 0, t;
-    for (t = s->low; t < 200; t += AREA_STEP) {
+    for (t = s->low; t < 200; t += step) {
         last = term;
         term = aspi_exp_64(aspi_prepared_log(s, aspi_exp_64(2 * t)) + 3 * t);
         sum += term;
@@ -64,31 +82,170 @@ double aspi_prepared_edge_on(const prepared_source *s)
     }
     if (term > 0 && term < last)
         sum += term * term / (last - term);
-    return 2 * AREA_STEP * sum;
+    return 2 * step * sum;
+}
+
+/* BELOW, for the samplers. */
+static void prepared_below_table(const prepared_source *s, const prepared_kernels *kernel, double t0, double *out)
+{
+    const int m = PREPARED_BELOW_CELLS;
+    double below[PREPARED_BELOW_CELLS + 1];
+    int i;
+    below[0] = aspi_log_64(0.5 / (t0 * t0)) - aspi_prepared_log(s, 0);
+    for (i = 1; i < m; i++) {
+        double root = (double)i / (m - i), mu = t0 * (root * root) * (root * root);
+        double here = aspi_prepared_log(s, mu * mu);
+        /* where P22 is long gone the differences of its logarithm are, too */
+        below[i] = here < -1e7 ? below[i - 1]
+                 : prepared_log_area(s, kernel, mu) - here - 1.5 * aspi_log_64(mu * mu + t0 * t0);
+    }
+    below[m] = below[m - 1];
+    aspi_prepared_spline(m, 1.0 / m, below, 1, 0, 0, out, 1);
+}
+
+/* ------------------------------------------------------------------ polynomials by pieces */
+
+typedef char prepared_pieces_fit[PREPARED_PIECES == ASP_PIECES_NUMBERS && ASP_PIECES_TERMS == 7 ? 1 : -1];
+
+#define TERMS ASP_PIECES_TERMS
+#define HALF_ROOT_3 0.86602540378443865
+
+/* A piece: where it is looked at, in y = 1/(1 + q), and J there. */
+typedef struct prepared_piece {
+    double y[TERMS], log_area[TERMS], log_density[TERMS];
+} prepared_piece;
+
+/* Less than e^this of what an edge-on view sees is gone in float64. */
+#define AREA_GONE (-3000.0)
+
+static double prepared_half_octave(int octave, int i)
+{
+    double q = 1 + 0.5 * (i & 1);
+    for (octave += i / 2; octave < 0; octave++)
+        q *= 0.5;
+    for (; octave > 0; octave--)
+        q *= 2;
+    return q;
+}
+
+/* At the Chebyshev points of the second kind between y0 and y1, both of them included, so that neighbours meet;
+ * y = 0 is not looked at. */
+static void prepared_look(const prepared_source *s, const prepared_kernels *kernel, double t0, double y0,
+                          double y1, prepared_piece *out)
+{
+    static const double node[TERMS] = { -1, -HALF_ROOT_3, -0.5, 0, 0.5, HALF_ROOT_3, 1 };
+    int i;
+    for (i = 0; i < TERMS; i++) {
+        double y = i == 0 ? y0 : i == TERMS - 1 ? y1 : 0.5 * (y0 + y1) + 0.5 * (y1 - y0) * node[i];
+        double far = y > 1e-7 * y0 ? y : 1e-7 * y0, mu = t0 * (1 - far) / far;
+        out->y[i] = y;
+        out->log_density[i] = aspi_prepared_log(s, mu * mu);
+        out->log_area[i] = mu <= 0 ? aspi_log_64(0.5 * t0)
+                         : out->log_density[i] < AREA_GONE && mu > t0 ? AREA_GONE
+                         : prepared_log_area(s, kernel, mu);
+    }
+}
+
+/* Piece i of a table: the polynomial through the values (Newton), in powers of y - center. */
+static void prepared_piece_put(const double *y, const double *value, double center, double *table, int i)
+{
+    double d[TERMS], c[TERMS] = { 0 };
+    int j, k;
+    for (j = 0; j < TERMS; j++)
+        d[j] = value[j];
+    for (k = 1; k < TERMS; k++)
+        for (j = TERMS - 1; j >= k; j--)
+            d[j] = (d[j] - d[j - 1]) / (y[j] - y[j - k]);
+    for (j = TERMS - 1; j >= 0; j--) {
+        for (k = TERMS - 1; k > 0; k--)
+            c[k] = c[k - 1] - (y[j] - center) * c[k];
+        c[0] = d[j] - (y[j] - center) * c[0];
+    }
+    table[i] = center;
+    for (k = 0; k < TERMS; k++)
+        table[(1 + k) * ASP_PIECES + i] = c[k];
+}
+
+static double prepared_center(const prepared_piece *p)
+{
+    return (double)(float)(0.5 * (p->y[0] + p->y[TERMS - 1]));     /* the same in both precisions */
+}
+
+static void prepared_area_piece(const prepared_piece *p, double t0, double *table, int i)
+{
+    double value[TERMS];
+    int j;
+    for (j = 0; j < TERMS; j++) {
+        double y = p->y[j] > 1e-7 * p->y[0] ? p->y[j] : 1e-7 * p->y[0];
+        value[j] = aspi_exp_64(p->log_area[j]) / (t0 * y);
+        value[j] = value[j] > 1e-25 ? value[j] : 0;        /* subnormal numbers are slow */
+    }
+    prepared_piece_put(p->y, value, prepared_center(p), table, i);
+}
+
+/* d log J/d log y for y -> 0. */
+static double prepared_fall(const prepared_source *s, const prepared_kernels *kernel, double t0)
+{
+    double mu = t0 / PREPARED_DEEP_LAST * 1e3;
+    return (prepared_log_area(s, kernel, mu) - prepared_log_area(s, kernel, 2 * mu)) / aspi_log_64(2);
+}
+
+/* log(J/T0) of bent densities, less the power it ends as in the last piece. */
+static void prepared_bent_piece(const prepared_piece *p, double t0, double fall, double *table, int i)
+{
+    double value[TERMS];
+    int j;
+    for (j = 0; j < TERMS; j++) {
+        double y = p->y[j] > 1e-7 * p->y[0] ? p->y[j] : 1e-7 * p->y[0];
+        value[j] = p->log_area[j] - aspi_log_64(t0);
+        if (i == ASP_PIECES - 1)
+            value[j] -= fall * aspi_log_64(y / PREPARED_DEEP_LAST);
+    }
+    prepared_piece_put(p->y, value, prepared_center(p), table, i);
+}
+
+/* The last piece is centered at y = 0, where the value is 0 and keeps its relative accuracy. */
+static void prepared_smooth_piece(const prepared_piece *p, double t0, double *table, int i)
+{
+    double value[TERMS];
+    int j, gone = !(p->log_area[TERMS - 1] > AREA_GONE), last = i == ASP_PIECES - 1;
+    for (j = 0; j < TERMS; j++) {
+        double y = p->y[j] > 0 ? p->y[j] : 1;
+        double x = p->log_area[j] - p->log_density[j] - 3 * aspi_log_64(t0) + 0.5 * aspi_log_64(y);
+        value[j] = gone ? 1 : p->y[j] > 0 ? aspi_exp_64(-0.4 * x) : 0;
+    }
+    prepared_piece_put(p->y, value, last ? 0 : prepared_center(p), table, i);
+}
+
+static void prepared_deep_piece(const prepared_piece *p, double t0, double *table, int i)
+{
+    if (table[PREPARED_IS_BENT] > 0)
+        prepared_bent_piece(p, t0, table[PREPARED_FALL], table + PREPARED_DEEP, i);
+    else
+        prepared_smooth_piece(p, t0, table + PREPARED_DEEP, i);
 }
 
 void aspi_prepared_area_tables(const prepared_source *s, double t0, double *out)
 {
-    const int n = PREPARED_AREA_CELLS, m = PREPARED_BELOW_CELLS;
+    const int both = 2 * (PREPARED_DEEP_OCTAVE - PREPARED_AREA_OCTAVE), last = ASP_PIECES - 1;
     prepared_kernels kernel;
-    double area[PREPARED_AREA_CELLS + 1], below[PREPARED_BELOW_CELLS + 1];
+    prepared_piece p;
+    double y = 1, next;
     int i;
-    prepared_kernel(&kernel);
-    area[0] = 1;
-    for (i = 1; i < n; i++) {
-        double root = (double)i / (n - i), mu = t0 * root * root;
-        area[i] = aspi_exp_64(prepared_log_far(s, &kernel, mu) + aspi_prepared_log(s, mu * mu))
-                * (2 * (mu + sqrt(mu * mu + t0 * t0)) / (t0 * t0));
+    prepared_kernel(prepared_finer(s), &kernel);
+    out[PREPARED_FALL] = prepared_fall(s, &kernel, t0);
+    for (i = 0; i < last + both; i++, y = next) {
+        next = 1 / (1 + prepared_half_octave(PREPARED_AREA_OCTAVE, i + 1));
+        prepared_look(s, &kernel, t0, y, next, &p);
+        if (i < last)
+            prepared_area_piece(&p, t0, out + PREPARED_AREA, i);
+        if (i >= both)
+            prepared_deep_piece(&p, t0, out, i - both);
     }
-    area[n] = (4 * area[n - 1] - area[n - 2]) / 3;
-    aspi_prepared_spline(n, 1.0 / n, area, 1, 0, 0, out + PREPARED_AREA, 1);
-    below[0] = aspi_log_64(0.5 / (t0 * t0)) - aspi_prepared_log(s, 0);
-    for (i = 1; i < m; i++) {
-        double root = (double)i / (m - i), mu = t0 * (root * root) * (root * root);
-        /* where P22 is long gone the differences of its logarithm are, too */
-        below[i] = aspi_prepared_log(s, mu * mu) < -1e7 ? below[i - 1]
-                 : prepared_log_far(s, &kernel, mu) - 1.5 * aspi_log_64(mu * mu + t0 * t0);
-    }
-    below[m] = below[m - 1];
-    aspi_prepared_spline(m, 1.0 / m, below, 1, 0, 0, out + PREPARED_BELOW, 1);
+    prepared_look(s, &kernel, t0, y, 0, &p);
+    prepared_deep_piece(&p, t0, out, last);
+    y = 1 / (1 + prepared_half_octave(PREPARED_AREA_OCTAVE, last));
+    prepared_look(s, &kernel, t0, y, 0, &p);
+    prepared_area_piece(&p, t0, out + PREPARED_AREA, last);
+    prepared_below_table(s, &kernel, t0, out + PREPARED_BELOW);
 }

@@ -53,7 +53,7 @@ static double sgd_log_density(const asp_ndf *k, double r2) { return -sgd_exponen
 ASP_RECORD asp_model asp_model_sgd = {
     "sgd", NULL, "Shifted Gamma Distribution (SGD)",
     "Bagher, Soler, Holzschuch 2012; Hoffman 2013, Out[57]",
-    ASP_KEYS_SLOPE, 1, 1, 1e-6, sgd_params, 2, sgd_prepare, ASP_NDF_OPS(sgd)
+    ASP_KEYS_SLOPE, 1, 1, 3e-7, sgd_params, 2, sgd_prepare, ASP_NDF_OPS(sgd)
 };
 #undef ASP_NDF
 

@@ -156,6 +156,7 @@ static asp_status tabulated_prepare(asp_ndf *out, asp_error *err)
     tabulated_slopes(out->table, last, tail);
     out->data = NULL;                        /* all that is needed stands in the value */
     out->table[TABULATED_NORM] = -aspi_log_64(tabulated_mass(out));
+    out->table[PREPARED_IS_BENT] = 1;
     return aspi_prepared_make(out, tabulated_log_density, err);
 }
 #undef ASP_PRECISION
@@ -222,6 +223,8 @@ ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
     return aspi_exp(k->table[TABULATED_NORM] + y) / (z2 * z2);
 }
 
+#define PREPARED_BENT
 #include "prepared_kernel.h"
 #include "asperity/ndf_loops.h"
+#undef PREPARED_BENT
 #endif

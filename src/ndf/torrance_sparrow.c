@@ -58,7 +58,7 @@ static double torrance_sparrow_log_density(const asp_ndf *k, double r2)
 ASP_RECORD asp_model asp_model_torrance_sparrow = {
     "torrance_sparrow", NULL, "Torrance-Sparrow: a Gaussian in the angle",
     "Torrance, Sparrow 1967; Hoffman 2013, Out[25]",
-    ASP_KEYS_SLOPE, 1, 1, 1e-6, torrance_sparrow_params, 1,
+    ASP_KEYS_SLOPE, 1, 1, 3e-7, torrance_sparrow_params, 1,
     torrance_sparrow_prepare, ASP_NDF_OPS(torrance_sparrow)
 };
 #undef ASP_NDF

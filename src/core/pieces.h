@@ -1,0 +1,53 @@
+/* pieces.h - polynomials of degree 6 by pieces, two to an octave
+ *
+ * A function with structure on several scales is cut into ASP_PIECES pieces: two to each octave of some
+ * q >= 0, the first from q = 0 and the last without end. Which piece, q says; the polynomial's argument is
+ * y less the piece's center, where y is any function of q that keeps its digits. A table holds the centers
+ * and then the seven coefficients, ASP_PIECES of each. Read once per precision. */
+
+#include "asperity/elementary.h"
+
+#ifndef ASP_PIECES
+#define ASP_PIECES 32
+#define ASP_PIECES_TERMS 7
+#define ASP_PIECES_NUMBERS (ASP_PIECES * (1 + ASP_PIECES_TERMS))
+/* `first` of a table whose first piece ends at 1.5 2^octave. */
+#define ASP_PIECES_FROM(octave) (2 * ((ASP_PRECISION == 64 ? 1023 : 127) + (octave)))
+#define aspi_piece ASP_NAME(aspi_piece)
+#define aspi_pieces ASP_NAME(aspi_pieces)
+#define aspi_pieces_n ASP_NAME(aspi_pieces_n)
+
+/* aspi_pieces in a loop; q, y and out do not overlap. */
+void aspi_pieces_n_64(const double *table, int first, size_t n, const double *q, const double *y, double *out);
+void aspi_pieces_n_32(const float *table, int first, size_t n, const float *q, const float *y, float *out);
+#endif
+
+#if (ASP_PRECISION == 64 && !defined(ASP_PIECES_64)) || \
+    (ASP_PRECISION == 32 && !defined(ASP_PIECES_32))
+#if ASP_PRECISION == 64
+#define ASP_PIECES_64
+#else
+#define ASP_PIECES_32
+#endif
+
+/* The piece of q: its exponent and the first bit of its fraction; a NaN counts as infinity. */
+ASP_FN int aspi_piece(int first, asp_real q)
+{
+    int i = (int)(aspi_to_bits(q) >> (ASP_PRECISION == 64 ? 51 : 22)) - first;
+    i = i < 0 ? 0 : i;
+    i = i < 0 ? 0 : i;
+    return i > ASP_PIECES - 1 ? ASP_PIECES - 1 : i;
+}
+
+/* Short chains: pairs first (Estrin). By index, not by a pointer to the piece: loops around it are vectorised. */
+ASP_FN asp_real aspi_pieces(const asp_real *table, int first, asp_real q, asp_real y)
+{
+    int i = aspi_piece(first, q);
+    asp_real t = y - table[i], t2 = t * t;
+#define C(n) table[i + (1 + n) * ASP_PIECES]
+    asp_real low = (C(0) + C(1) * t) + (C(2) + C(3) * t) * t2;
+    asp_real high = (C(4) + C(5) * t) + C(6) * t2;
+#undef C
+    return low + high * (t2 * t2);
+}
+#endif
