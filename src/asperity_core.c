@@ -54,6 +54,8 @@
 #undef ASP_PRECISION
 #include "bsdf/compensated.c"
 #undef ASP_PRECISION
+#include "bsdf/compensated_dielectric.c"
+#undef ASP_PRECISION
 #include "bsdf/conductor.c"
 #undef ASP_PRECISION
 #include "bsdf/dielectric.c"

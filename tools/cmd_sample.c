@@ -171,7 +171,7 @@ static int make_job(const cmd_args *args, job *work)
     work->materialf = asp_material_narrow(&work->material);
     if (work->what == VISIBLE && !(asp_sigma(&work->material.ndf, work->wi) > 0))
         return cmd_usage("--wi %s: no facet is seen from there", cmd_text(args, "wi"));
-    int both = work->material.model && work->material.model->facets == ASPI_FACETS_REFRACT;
+    int both = work->material.model && aspi_bsdf_crosses(work->material.model);
     if (work->what == BRDF && both && work->wi.z == 0)
         return cmd_usage("--wi %s: lies in the surface", cmd_text(args, "wi"));
     if (work->what == BRDF && !both && !(work->wi.z > 0))

@@ -65,8 +65,16 @@ struct asp_bsdf {
                     asp_bsdf_samplef *out);
 };
 
+/* Does light cross it? Then it is there from both sides. */
+int aspi_bsdf_crosses(const asp_bsdf *model);
+
 /* transport=radiance|importance into out->transport. */
 asp_status aspi_parse_transport(aspi_spec *spec, asp_material *out, asp_error *err);
+
+/* form=kulla_conty or turquin into out->b.r: how lost energy is given back. */
+enum { COMPENSATED_KULLA_CONTY, COMPENSATED_TURQUIN };
+asp_status aspi_parse_compensation(aspi_spec *spec, asp_material *out, asp_error *err);
+#define ASPI_COMPENSATION_KEY { "form", "kulla_conty (default) or turquin" }
 
 /* Fills the film's table: linear sRGB reflectance over the cosine. metal: NULL for out->c + i out->d. */
 void aspi_film_prepare(asp_material *out, const asp_metal *metal, double film_eta, double thickness);
@@ -83,6 +91,12 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
     { "tint", "with f0: factor at 82 degrees (F82-tint), 1 = Schlick" }, \
     { "film", "thickness in nm of a thin film on it, up to 10000" }, \
     { "film_eta", "index of the film, 1 to 10, default 1.33" }
+
+/* The keys of a dielectric; what has a transport is there from both sides. */
+#define ASPI_DIELECTRIC_KEYS \
+    { "eta", "index of refraction, interior over exterior, 0.01 to 100, default 1.5" }, \
+    { "thin", "1: a sheet instead of a half space, default 0" }, \
+    { "transport", "radiance (default) or importance: whether what crosses is scaled by 1/eta^2" }
 
 /* The formulas of a record, in the order of struct asp_bsdf. */
 #define ASPI_BSDF_OPS(n) n##_value_1_64, n##_value_1_32, n##_value_n_64, n##_value_n_32, \

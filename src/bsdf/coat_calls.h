@@ -27,8 +27,8 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
         out->r = out->g = out->b = x * R(0.0);
         return;
     }
-    ei = aspi_energy_at(mat->energy, *wi);
-    eo = aspi_energy_at(mat->energy, *wo);
+    ei = aspi_energy_at(mat, mat->energy, *wi);
+    eo = aspi_energy_at(mat, mat->energy, *wo);
     *out = coat_rest(mat, ei, eo);
     out->r = (out->r + F[0] * x * COAT_SCALE(mat, mat->a.r, ei)) * by;
     out->g = (out->g + F[1] * x * COAT_SCALE(mat, mat->a.g, ei)) * by;
@@ -39,13 +39,13 @@ static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
 {
     asp_real F[3], pdf;
     coat_lobe(mat, *wi, *wo, F, &pdf);
-    return aspi_mixed_density(wi->z, wo->z, pdf, coat_share(mat, aspi_energy_at(mat->energy, *wi)));
+    return aspi_mixed_density(wi->z, wo->z, pdf, coat_share(mat, aspi_energy_at(mat, mat->energy, *wi)));
 }
 
 static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2, asp_real u3,
                         asp_sampled *out)
 {
-    asp_real share = coat_share(mat, aspi_energy_at(mat->energy, *wi)), inverse;
+    asp_real share = coat_share(mat, aspi_energy_at(mat, mat->energy, *wi)), inverse;
     asp_v3 m = ASPI_CALL(asp_sample_visible)(&mat->ndf, *wi, u1, u2);
     out->wo = u3 < share ? aspi_reflect(*wi, m) : aspi_cosine_lobe(*wi, u1, u2);
     out->pdf = bsdf_pdf(mat, wi, &out->wo);

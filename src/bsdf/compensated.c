@@ -9,8 +9,6 @@
 #include "bsdf/bsdf.h"
 #include "bsdf/energy.h"
 
-enum { COMPENSATED_KULLA_CONTY, COMPENSATED_TURQUIN };
-
 #define ASP_NDF compensated
 #define ASP_PRECISION 64
 #include "compensated.c"
@@ -54,7 +52,7 @@ static asp_status compensated_prepare(asp_material *out, asp_error *err)
     return ASP_OK;
 }
 
-static asp_status compensated_parse(aspi_spec *spec, asp_material *out, asp_error *err)
+asp_status aspi_parse_compensation(aspi_spec *spec, asp_material *out, asp_error *err)
 {
     aspi_item *item = aspi_spec_find(spec, "form");
     out->b.r = COMPENSATED_KULLA_CONTY;
@@ -63,12 +61,16 @@ static asp_status compensated_parse(aspi_spec *spec, asp_material *out, asp_erro
     else if (item && (item->value_size != 11 || memcmp(item->value, "kulla_conty", 11)))
         return aspi_spec_fail(spec, item->value, ASP_EUNKNOWN, "form", 4,
                               "expected kulla_conty or turquin", err);
-    return aspi_parse_fresnel(spec, 0.0, out, err);
+    return ASP_OK;
 }
 
-static const aspi_bsdf_key compensated_keys[] = {
-    { "form", "kulla_conty (default) or turquin" }, ASPI_FRESNEL_KEYS, { NULL, NULL }
-};
+static asp_status compensated_parse(aspi_spec *spec, asp_material *out, asp_error *err)
+{
+    asp_status s = aspi_parse_compensation(spec, out, err);
+    return s ? s : aspi_parse_fresnel(spec, 0.0, out, err);
+}
+
+static const aspi_bsdf_key compensated_keys[] = { ASPI_COMPENSATION_KEY, ASPI_FRESNEL_KEYS, { NULL, NULL } };
 
 ASP_RECORD asp_bsdf asp_bsdf_compensated = {
     "compensated", "Rough conductor, energy given back", "Kulla, Conty 2017; Turquin 2019",

@@ -37,12 +37,7 @@ static asp_status dielectric_parse(aspi_spec *spec, asp_material *out, asp_error
     return s;
 }
 
-static const aspi_bsdf_key dielectric_keys[] = {
-    { "eta", "index of refraction, interior over exterior, 0.01 to 100, default 1.5" },
-    { "thin", "1: a sheet instead of a half space, default 0" },
-    { "transport", "radiance (default) or importance: whether what crosses is scaled by 1/eta^2" },
-    { NULL, NULL }
-};
+static const aspi_bsdf_key dielectric_keys[] = { ASPI_DIELECTRIC_KEYS, { NULL, NULL } };
 
 ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
     "dielectric", "Rough dielectric", "Walter et al. 2007, eqs. 20-21", dielectric_keys, 0,

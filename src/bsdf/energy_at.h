@@ -1,12 +1,15 @@
 /* energy_at.h - looking up the table of energy.h, in both precisions */
 
 #include "asperity/facet.h"
+#include "bsdf/bsdf_number.h"
+#include "bsdf/cubic.h"
 #include "bsdf/energy.h"
 
 #ifndef ASPI_ENERGY_NAMES
 #define ASPI_ENERGY_NAMES
 #define aspi_energy_at ASP_NAME(aspi_energy_at)
 #define aspi_energy_row ASP_NAME(aspi_energy_row)
+#define aspi_energy_masked ASP_NAME(aspi_energy_masked)
 #endif
 
 #if (ASP_PRECISION == 64 && !defined(ASPI_ENERGY_64)) || \
@@ -17,44 +20,50 @@
 #define ASPI_ENERGY_32
 #endif
 
-/* Cubic through four rows of a column (Lagrange), x in [0, ENERGY_ROWS - 1]. */
-ASP_FN asp_real aspi_energy_row(const asp_real *e, asp_real x)
+/* Cubic through four of the rows of a column, x in [0, rows - 1]. */
+ASP_FN asp_real aspi_energy_row(const asp_real *e, int rows, asp_real x)
 {
+    asp_real weight[4];
     int i = (int)x;
-    asp_real d;
     i = i < 1 ? 1 : i;
-    i = i > ENERGY_ROWS - 3 ? ENERGY_ROWS - 3 : i;
-    d = x - R(i);
+    i = i > rows - 3 ? rows - 3 : i;
+    aspi_cubic(x - R(i), weight);
     e += i - 1;
-    return e[0] * (R(-1.0 / 6.0) * d * (d - R(1.0)) * (d - R(2.0)))
-         + e[1] * (R(0.5) * (d + R(1.0)) * (d - R(1.0)) * (d - R(2.0)))
-         + e[2] * (R(-0.5) * (d + R(1.0)) * d * (d - R(2.0)))
-         + e[3] * (R(1.0 / 6.0) * (d + R(1.0)) * d * (d - R(1.0)));
+    return e[0] * weight[0] + e[1] * weight[1] + e[2] * weight[2] + e[3] * weight[3];
 }
 
-/* E(w), w.z > 0, in [0, 1]. */
-ASP_FN asp_real aspi_energy_at(const asp_real *energy, asp_v3 w)
+/* What a skewed surface shows without `min` and walls, over what it shows with them. */
+ASP_FN asp_real aspi_energy_masked(const asp_shape *k, asp_v3 w, int mask)
 {
-    int columns = (int)energy[ENERGY_COUNT];
-    asp_real x = aspi_sqrt(aspi_min(aspi_max(w.z, R(0.0)), R(1.0))) * R(ENERGY_ROWS - 1), E;
+    asp_real sigma, seen;
+    if (k->map.tx == R(0.0) && k->map.ty == R(0.0))
+        return R(1.0);
+    sigma = ASPI_CALL(asp_sigma)(k, w);
+    seen = aspi_masked(k, w, sigma, mask);
+    return aspi_max(sigma / aspi_max(seen, ASP_SMALLEST), R(1e-6));
+}
+
+/* E(w) from a table of the material, w.z > 0, in [0, 1]. */
+ASP_FN asp_real aspi_energy_at(const asp_mat *mat, const asp_real *energy, asp_v3 w)
+{
+    int columns = (int)energy[ENERGY_COUNT], rows = (int)energy[ENERGY_HEIGHT];
+    asp_real c = aspi_min(aspi_max(w.z, R(0.0)), R(1.0)), a = aspi_sqrt(c);
+    asp_real x = a / (a + aspi_sqrt(R(1.0) - c)) * R(rows - 1), E;
     if (columns == 1) {
-        E = aspi_energy_row(energy, x);
+        E = aspi_energy_row(energy, rows, x);
     } else {
-        asp_real turn = aspi_atan(w.y, w.x) * R(0.5 / ASP_PI) * energy[ENERGY_TURNS], y, d, weight[4];
+        asp_real turn = aspi_atan(w.y, w.x) * R(0.5 / ASP_PI) * energy[ENERGY_TURNS], y, weight[4];
         int j, k;
         turn = turn - R((int)turn);
         turn = turn < R(0.0) ? turn + R(1.0) : turn;
         y = turn * R(columns);
         j = (int)y;
-        d = y - R(j);
-        weight[0] = R(-1.0 / 6.0) * d * (d - R(1.0)) * (d - R(2.0));
-        weight[1] = R(0.5) * (d + R(1.0)) * (d - R(1.0)) * (d - R(2.0));
-        weight[2] = R(-0.5) * (d + R(1.0)) * d * (d - R(2.0));
-        weight[3] = R(1.0 / 6.0) * (d + R(1.0)) * d * (d - R(1.0));
+        aspi_cubic(y - R(j), weight);
         E = R(0.0);
         for (k = 0; k < 4; k++)
-            E = E + weight[k] * aspi_energy_row(energy + (j + k + columns - 1) % columns * ENERGY_ROWS, x);
+            E = E + weight[k] * aspi_energy_row(energy + (j + k + columns - 1) % columns * rows, rows, x);
     }
+    E = E * aspi_energy_masked(&mat->ndf, w, mat->mask);
     return aspi_min(aspi_max(E, R(0.0)), R(1.0));
 }
 #endif

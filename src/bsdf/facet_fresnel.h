@@ -1,6 +1,7 @@
 /* facet_fresnel.h - the Fresnel term of a material, in both precisions */
 
 #include "asperity/fresnel.h"
+#include "bsdf/cubic.h"
 #include "bsdf/energy.h"
 
 #ifndef ASPI_FACET_FRESNEL_NAMES
@@ -17,17 +18,14 @@
 #define ASPI_FACET_FRESNEL_32
 #endif
 
-/* Cubic through four nodes of a channel (Lagrange). */
+/* Cubic through four nodes of a channel. */
 ASP_FN asp_real aspi_fresnel_film(const asp_real *f, asp_real c)
 {
-    asp_real x = aspi_unit_cosine(c) * R(ENERGY_FILM_NODES - 1), d, y;
-    /* the first of the four; a NaN gives 0 here and comes out by d */
+    asp_real x = aspi_unit_cosine(c) * R(ENERGY_FILM_NODES - 1), weight[4], y;
+    /* the first of the four; a NaN gives 0 here and comes out by the weights */
     int i = (int)aspi_min(aspi_max(R(0.0), x - R(1.0)), R(ENERGY_FILM_NODES - 4));
-    d = x - R(i + 1);
-    y = f[i] * (R(-1.0 / 6.0) * d * (d - R(1.0)) * (d - R(2.0)))
-      + f[i + 1] * (R(0.5) * (d + R(1.0)) * (d - R(1.0)) * (d - R(2.0)))
-      + f[i + 2] * (R(-0.5) * (d + R(1.0)) * d * (d - R(2.0)))
-      + f[i + 3] * (R(1.0 / 6.0) * (d + R(1.0)) * d * (d - R(1.0)));
+    aspi_cubic(x - R(i + 1), weight);
+    y = f[i] * weight[0] + f[i + 1] * weight[1] + f[i + 2] * weight[2] + f[i + 3] * weight[3];
     y = y < R(0.0) ? R(0.0) : y;
     return y > R(1.0) ? R(1.0) : y;
 }

@@ -175,6 +175,14 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
     return ASP_OK;
 }
 
+int aspi_bsdf_crosses(const asp_bsdf *model)
+{
+    const aspi_bsdf_key *key = model->keys;
+    while (key->name && strcmp(key->name, "transport"))
+        key++;
+    return key->name != NULL;
+}
+
 asp_status aspi_parse_transport(aspi_spec *spec, asp_material *out, asp_error *err)
 {
     aspi_item *item = aspi_spec_find(spec, "transport");

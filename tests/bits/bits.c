@@ -228,6 +228,9 @@ static int models(int verbose, hashes wide, hashes narrow)
         "plastic:albedo=1,mask=wall,ndf=(student_t:alpha_x=0.2,alpha_y=0.5,gamma=3.1,mean_x=0.3)",
         "compensated:metal=Au,ndf=(beckmann:alpha_x=0.7,alpha_y=0.4)",
         "compensated:metal=Cu,form=turquin,ndf=(ggx:alpha=0.6)",
+        "compensated_dielectric:eta=1.6,ndf=(student_t:alpha=0.5,gamma=2.7)",
+        "compensated_dielectric:eta=0.7,form=turquin,mask=wall,ndf=(ggx:alpha_x=0.6,alpha_y=0.3,mean_x=0.2)",
+        "compensated_dielectric:eta=1.4,thin=1,ndf=(beckmann:alpha=0.6)",
         "conductor:metal=Ti,film=320,film_eta=2.1,ndf=(ggx:alpha_x=0.3,alpha_y=0.1,rotation=0.4)",
         "conductor:f0=0.9/0.6/0.3,tint=0.8,ndf=(student_t:alpha=0.5,gamma=2.2,mean_y=-0.4)"
     };
