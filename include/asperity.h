@@ -300,7 +300,7 @@ asp_status asp_index_of_f82(double f0, double tint, double *eta, double *k, asp_
  *     compensated:metal=Au,form=kulla_conty,ndf=(beckmann:alpha=0.8)    (energy given back)
  *     compensated_dielectric:eta=1.5,form=kulla_conty,ndf=(ggx:alpha=0.6)  (the same for both sides of glass)
  *     dielectric:eta=1.5,transport=radiance,ndf=(ggx:alpha=0.2)         plastic:albedo=0.4/0.1/0.1,eta=1.5,ndf=(ggx)
- *     rough_diffuse:albedo=0.8,form=exact,ndf=(beckmann:alpha=1)
+ *     rough_diffuse:albedo=0.8,form=eon,ndf=(beckmann:alpha=1)
  *     lambert_specular:diffuse=0.2/0.1/0.05,specular=1,eta=1.5,ndf=(ggx:alpha=0.2) */
 
 typedef struct asp_bsdf asp_bsdf;        /* what a scattering model is: see asperity_ndf.h */

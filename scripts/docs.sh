@@ -88,7 +88,7 @@ put docs/images/spheres.png "$scratch/spheres.png"
 # pictures of docs/materials.md: NAME SAMPLES SPEC
 while read -r name samples spec; do
     walk=
-    [ "$name" != walk ] || walk=--walk
+    case $name in walk*) walk=--walk ;; esac
     # shellcheck disable=SC2086
     asperity render $walk --size 144 --spp "$samples" --material "$spec" -o "$scratch/material.png" ||
         { echo "docs.sh: $name could not be rendered" >&2; exit 1; }
@@ -104,6 +104,9 @@ plastic 64 plastic:albedo=0.5/0.05/0.05,ndf=(ggx:alpha=0.15)
 compensated 64 compensated:metal=Cu,ndf=(ggx:alpha=0.8)
 single 64 conductor:metal=Cu,ndf=(ggx:alpha=0.8)
 walk 32 conductor:metal=Cu,ndf=(ggx:alpha=0.8)
+compensated_dielectric 128 compensated_dielectric:eta=1.5,ndf=(ggx:alpha=0.8)
+single_dielectric 128 dielectric:eta=1.5,ndf=(ggx:alpha=0.8)
+walk_dielectric 64 dielectric:eta=1.5,ndf=(ggx:alpha=0.8)
 END
 file docs/commands.md asperity help --markdown
 file docs/distributions.md asperity list --markdown

@@ -21,7 +21,8 @@ KEPT = {
 GLASS = "dielectric:eta=1.5,ndf=(ggx:alpha=0.3)"
 MODELS = ["conductor:metal=Cu,ndf=(ggx:alpha=0.4)", "lambert_specular:ndf=(ggx:alpha=0.4)", GLASS,
           "dielectric:eta=1.5,thin=1,ndf=(ggx:alpha=0.3)", "rough_diffuse:albedo=0.6,ndf=(ggx:alpha=0.4)",
-          "rough_diffuse:form=oren_nayar,ndf=(ggx:alpha=0.4)", "plastic:albedo=0.5/0.2/0.1,ndf=(ggx:alpha=0.3)",
+          "rough_diffuse:form=oren_nayar,ndf=(ggx:alpha=0.4)",
+          "rough_diffuse:form=eon,albedo=0.7/0.4/0.1,ndf=(ggx:alpha=0.8)", "plastic:albedo=0.5/0.2/0.1,ndf=(ggx:alpha=0.3)",
           "compensated:metal=Au,ndf=(beckmann:alpha=0.5)", "compensated:form=turquin,ndf=(ggx:alpha=0.5)",
           "compensated_dielectric:eta=1.5,ndf=(ggx:alpha=0.6)",
           "compensated_dielectric:form=turquin,eta=0.7,thin=0,ndf=(beckmann:alpha=0.6)",

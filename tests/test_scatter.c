@@ -373,6 +373,51 @@ static void check_diffuse(void)
     expect(worst < 1e-14, "and reciprocal", worst);
 }
 
+/* eon by quadrature over the hemisphere: albedo 1 returns all light, less in between, and its mean. */
+static void check_eon(void)
+{
+    static const double alphas[] = { 0.05, 0.5, 1, 5, 100 };
+    double worst = 0, back = 0, dark = 0, fujii = 1;
+    for (int a = 0; a < 5; a++) {
+        char spec[96];
+        asp_material eon[2], plain;
+        snprintf(spec, sizeof spec, "rough_diffuse:form=eon,albedo=1,ndf=(ggx:alpha=%g)", alphas[a]);
+        eon[0] = material(spec);
+        snprintf(spec, sizeof spec, "rough_diffuse:form=eon,albedo=0.5,ndf=(ggx:alpha=%g)", alphas[a]);
+        eon[1] = material(spec);
+        snprintf(spec, sizeof spec, "rough_diffuse:form=fujii,albedo=1,ndf=(ggx:alpha=%g)", alphas[a]);
+        plain = material(spec);
+        for (int k = 0; k < 5; k++) {
+            asp_vec3 wi = direction(0.05 + 0.37 * k, 0.3);
+            double sum[3] = { 0, 0, 0 };
+            int n = 128, m = 256;
+            /* the integrand has a kink where wo is as high as wi: the rule is cut there */
+            for (int half = 0; half < 2; half++)
+                for (int i = 0; i < n; i++)
+                    for (int j = 0; j < m; j++) {
+                        double low = half ? 0.05 + 0.37 * k : 0, high = half ? PI / 2 : 0.05 + 0.37 * k;
+                        double theta = low + (high - low) * (i + 0.5) / n, phi = 0.3 + 2 * PI * (j + 0.5) / m;
+                        asp_vec3 wo = direction(theta, phi);
+                        double w = sin(theta) * (high - low) / n * 2 * PI / m;
+                        sum[0] += asp_eval_cos(&eon[0], wi, wo).r * w;
+                        sum[1] += asp_eval_cos(&eon[1], wi, wo).r * w;
+                        sum[2] += asp_eval_cos(&plain, wi, wo).r * w;
+                        if (j == 0) {
+                            double f = asp_eval(&eon[0], wi, wo).r, g = asp_eval(&eon[0], wo, wi).r;
+                            back = fmax(back, fabs(f / g - 1));
+                        }
+                    }
+            worst = fmax(worst, fabs(sum[0] - 1));
+            dark = fmax(dark, sum[1]);
+            fujii = fmin(fujii, sum[2]);
+        }
+    }
+    expect(worst < 1e-4, "eon with albedo 1 returns all light", worst);
+    expect(fujii < 0.75, "fujii, which it completes, does not", fujii);
+    expect(dark < 0.5 + 1e-4, "eon with albedo 1/2 returns at most half", dark);
+    expect(back < 1e-14, "eon is reciprocal", back);
+}
+
 static void check_refusals(void)
 {
     static const char *const bad[] = {
@@ -406,6 +451,7 @@ int main(void)
     check_bounded();
     check_spectrum();
     check_diffuse();
+    check_eon();
     check_refusals();
     printf("%d passed, %d failed\n", passed, failed);
     return failed != 0;

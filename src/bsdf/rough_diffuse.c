@@ -7,14 +7,18 @@
  *
  * Approximations by name, which take their one number from the slopes' spread along x and y (tan^2 of
  * sigma = (alpha_x^2 + alpha_y^2)/4, the Gaussian facets of the same alpha): `oren_nayar` (Oren, Nayar
- * 1994, the qualitative model) and `fujii` (Fujii 2012, without its dark ring at grazing angles). */
+ * 1994, the qualitative model) and `fujii` (Fujii 2012, without its dark ring at grazing angles). `eon`
+ * (Portsmouth, Kutz, Hill 2025) gives back what fujii's loses, albedo 1 - E(w), so that facets of albedo 1
+ * return all light: with Em the mean of E
+ *
+ *     f = fujii + (1 - E(wi))(1 - E(wo)) / (pi (1 - Em))  a^2 Em / (1 - a (1 - Em)) */
 #ifndef ASP_PRECISION
 #include "bsdf/bsdf.h"
 
 #define ROUGH_NODES 233
 #define ROUGH_STEP 144
 
-enum { ROUGH_EXACT, ROUGH_OREN_NAYAR, ROUGH_FUJII };
+enum { ROUGH_EXACT, ROUGH_OREN_NAYAR, ROUGH_FUJII, ROUGH_EON, ROUGH_FORMS };
 
 #define ASP_NDF rough_diffuse
 #define ASP_PRECISION 64
@@ -25,9 +29,28 @@ enum { ROUGH_EXACT, ROUGH_OREN_NAYAR, ROUGH_FUJII };
 #undef ASP_PRECISION
 #undef ASP_NDF
 
+static double given_back(double a, double mean)
+{
+    return a * a * mean / (1.0 - a * (1.0 - mean)) / aspi_max_64(1.0 - mean, 1e-12);
+}
+
+static asp_status rough_diffuse_prepare(asp_material *out, asp_error *err)
+{
+    double angle = rough_diffuse_angle_64(&out->ndf);
+    /* the mean of E(w) against 2 cos dcos */
+    double mean = (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * ASP_PI)) * angle) / (1.0 + (0.5 - 2.0 / (3.0 * ASP_PI)) * angle);
+    (void)err;
+    if (out->b.r != ROUGH_EON)
+        return ASP_OK;
+    out->c.r = given_back(out->a.r, mean);
+    out->c.g = given_back(out->a.g, mean);
+    out->c.b = given_back(out->a.b, mean);
+    return ASP_OK;
+}
+
 static asp_status rough_diffuse_parse(aspi_spec *spec, asp_material *out, asp_error *err)
 {
-    static const char *const forms[] = { "exact", "oren_nayar", "fujii" };
+    static const char *const forms[] = { "exact", "oren_nayar", "fujii", "eon" };
     aspi_item *item;
     asp_status s;
     size_t i = 0;
@@ -36,25 +59,26 @@ static asp_status rough_diffuse_parse(aspi_spec *spec, asp_material *out, asp_er
     s = aspi_spec_colour(spec, "albedo", 0.0, 0, 1.0, &out->a, NULL, err);
     if (s || (item = aspi_spec_find(spec, "form")) == NULL)
         return s;
-    while (i < 3 && (strlen(forms[i]) != item->value_size
+    while (i < ROUGH_FORMS && (strlen(forms[i]) != item->value_size
                      || memcmp(forms[i], item->value, item->value_size)))
         i++;
-    if (i == 3)
+    if (i == ROUGH_FORMS)
         return aspi_spec_fail(spec, item->value, ASP_EUNKNOWN, "form", 4,
-                              "expected exact, oren_nayar or fujii", err);
+                              "expected exact, oren_nayar, fujii or eon", err);
     out->b.r = (double)i;
     return ASP_OK;
 }
 
 static const aspi_bsdf_key rough_diffuse_keys[] = {
     { "albedo", "of a facet, 0 to 1, default 0.8" },
-    { "form", "exact (default), oren_nayar or fujii" },
+    { "form", "exact (default), oren_nayar, fujii or eon" },
     { NULL, NULL }
 };
 
 ASP_RECORD asp_bsdf asp_bsdf_rough_diffuse = {
     "rough_diffuse", "Lambertian facets", "Heitz et al. 2016, sec. 5.3; Oren, Nayar 1994",
-    rough_diffuse_keys, 0, ASPI_FACETS_DIFFUSE, rough_diffuse_parse, NULL, ASPI_BSDF_OWN(rough_diffuse)
+    rough_diffuse_keys, 0, ASPI_FACETS_DIFFUSE, rough_diffuse_parse, rough_diffuse_prepare,
+    ASPI_BSDF_OWN(rough_diffuse)
 };
 
 #else
@@ -67,6 +91,8 @@ ASP_RECORD asp_bsdf asp_bsdf_rough_diffuse = {
 #define half_mean ASP_NDF_NAME(_half_mean)
 #define exact_part ASP_NDF_NAME(_exact_part)
 #define named_part ASP_NDF_NAME(_named_part)
+#define slope_angle ASP_NDF_NAME(_angle)
+#define fujii_lost ASP_NDF_NAME(_fujii_lost)
 #endif
 
 /* Mean of max(0, b.m) over the facets visible from a. */
@@ -95,14 +121,32 @@ static asp_real exact_part(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *w
                                  mat->mask & 15 ? ASP_MASK_UNCORRELATED : ASP_MASK_CORRELATED);
 }
 
+/* The one number of the approximations. */
+static asp_real slope_angle(const asp_shape *k)
+{
+    asp_real spread = R(0.25) * (k->map.m00 * k->map.m00 + k->map.m01 * k->map.m01
+                                 + k->map.m10 * k->map.m10 + k->map.m11 * k->map.m11);
+    return aspi_atan(aspi_sqrt(spread), R(1.0));
+}
+
+/* 1 - E(w) of fujii's form with albedo 1: with s, c the sine and cosine of the angle t, E =
+ * (1 + angle/pi (s (t - s c) + 2/3 (s (1 - s^3)/c - s))) over what divides f. Along the horizon it is 0. */
+static asp_real fujii_lost(const asp_shape *k, const asp_v3 *w)
+{
+    asp_real angle = slope_angle(k), s2 = w->x * w->x + w->y * w->y, s = aspi_sqrt(s2), c = w->z;
+    asp_real G = s * (aspi_atan(s, c) - s * c)
+               + R(2.0 / 3.0) * s * (c * (R(1.0) + s + s2) / (R(1.0) + s) - R(1.0));
+    asp_real lost = angle * (R(0.5 - 2.0 / (3.0 * ASP_PI)) - R(1.0 / ASP_PI) * G)
+                  / (R(1.0) + R(0.5 - 2.0 / (3.0 * ASP_PI)) * angle);
+    return lost > R(0.0) ? lost : R(0.0);
+}
+
 /* pi f / albedo of the approximations: A + B s/t with s = wi.wo - cos cos (Oren, Nayar 1994, eq. 30 in
  * Cartesian form); t = max(cos_i, cos_o) where s > 0. */
 static asp_real named_part(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
 {
     const asp_shape *k = &mat->ndf;
-    asp_real spread = R(0.25) * (k->map.m00 * k->map.m00 + k->map.m01 * k->map.m01
-                                 + k->map.m10 * k->map.m10 + k->map.m11 * k->map.m11);
-    asp_real angle = aspi_atan(aspi_sqrt(spread), R(1.0)), s2 = angle * angle;
+    asp_real angle = slope_angle(k), s2 = angle * angle;
     asp_real s = wi->x * wo->x + wi->y * wo->y, t;
     if (mat->b.r == R(ROUGH_OREN_NAYAR)) {
         t = s > R(0.0) ? aspi_max(aspi_max(wi->z, wo->z), ASP_SMALLEST) : R(1.0);
@@ -115,14 +159,16 @@ static asp_real named_part(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *w
 
 static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, asp_c3 *out)
 {
-    asp_real f = (wi->x + wi->y + wi->z + wo->x + wo->y + wo->z) * R(0.0);
+    asp_real f = (wi->x + wi->y + wi->z + wo->x + wo->y + wo->z) * R(0.0), rest = f;
     if (wi->z > R(0.0) && wo->z > R(0.0) && f == R(0.0)) {
-        f = mat->b.r == R(ROUGH_EXACT) ? exact_part(mat, wi, wo) : named_part(mat, wi, wo);
-        f = f * R(1.0 / ASP_PI) * (cosine ? wo->z : R(1.0));
+        asp_real by = R(1.0 / ASP_PI) * (cosine ? wo->z : R(1.0));
+        f = by * (mat->b.r == R(ROUGH_EXACT) ? exact_part(mat, wi, wo) : named_part(mat, wi, wo));
+        if (mat->b.r == R(ROUGH_EON))
+            rest = by * (fujii_lost(&mat->ndf, wi) * fujii_lost(&mat->ndf, wo));
     }
-    out->r = mat->a.r * f;
-    out->g = mat->a.g * f;
-    out->b = mat->a.b * f;
+    out->r = mat->a.r * f + mat->c.r * rest;
+    out->g = mat->a.g * f + mat->c.g * rest;
+    out->b = mat->a.b * f + mat->c.b * rest;
 }
 
 static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)

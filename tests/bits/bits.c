@@ -224,6 +224,7 @@ static int models(int verbose, hashes wide, hashes narrow)
         "dielectric:eta=1.8,thin=1,mask=v_cavity,ndf=(student_t:alpha=0.4,gamma=2.7)",
         "rough_diffuse:albedo=0.8/0.5/0.2,ndf=(ggx:alpha=0.5)",
         "rough_diffuse:form=oren_nayar,ndf=(beckmann:alpha=0.5)", "rough_diffuse:form=fujii,ndf=(ggx:alpha=0.6)",
+        "rough_diffuse:form=eon,albedo=0.9/0.5/0.1,ndf=(ggx:alpha_x=0.6,alpha_y=0.2)",
         "plastic:albedo=0.7/0.4/0.2,eta=1.6,ndf=(ggx:alpha=0.2)",
         "plastic:albedo=1,mask=wall,ndf=(student_t:alpha_x=0.2,alpha_y=0.5,gamma=3.1,mean_x=0.3)",
         "compensated:metal=Au,ndf=(beckmann:alpha_x=0.7,alpha_y=0.4)",
