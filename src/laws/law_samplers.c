@@ -12,6 +12,7 @@
 
 #define ALLOWED 6.0 /* -log10 p */
 #define PILOT 4096
+#define LEAST_WEIGHT 1e-9
 #define BLOCK 512
 
 typedef struct sampling {
@@ -116,7 +117,7 @@ static double test_stream(aspi_trial *t, const sampling *s, const char *name)
 {
     aspi_histogram *h = (aspi_histogram *)malloc(sizeof *h);
     block *b = (block *)malloc(sizeof *b);
-    double *radii = (double *)malloc(PILOT * sizeof *radii), p = 0, phi, mean = 0;
+    double *radii = (double *)malloc(PILOT * sizeof *radii), p = 0, phi, largest = 0;
     size_t done, i;
     if (!h || !b || !radii) {
         t->no_memory = 1;
@@ -130,13 +131,18 @@ static double test_stream(aspi_trial *t, const sampling *s, const char *name)
             aspi_standard_polar(s->ndf, m, &radii[done + i], &phi);
             if (!(radii[done + i] == radii[done + i]))
                 radii[done + i] = INFINITY;
-            mean += b->red[i] / PILOT;
+            largest = fmax(largest, b->red[i]);
         }
+    }
+    /* seen from far below the mean plane next to nothing is sent back; eval is integrated to a share of 1 */
+    if (s->horizon_only && largest < LEAST_WEIGHT) {
+        p = 1;
+        goto out;
     }
     aspi_histogram_edges(h, radii, PILOT, s->view ? standard_azimuth(s->ndf, s->view->w) : 0.1, farthest(s));
     if (t->planar)
         aspi_histogram_blocks(h, &t->lattice);
-    aspi_histogram_integrate(h, t, stated, s, s->horizon_only ? fmin(fmax(30 * mean, 1e-200), 1) : 1);
+    aspi_histogram_integrate(h, t, stated, s);
     for (done = 0; done < t->samples; done += BLOCK) {
         size_t n = t->samples - done < BLOCK ? t->samples - done : BLOCK;
         draw(t, s, n, b);

@@ -140,9 +140,8 @@ void aspi_histogram_edges(aspi_histogram *h, double *radii, size_t count, double
 /* The same for a surface counted in cells: blocks of half cells, their edges inside the lattice's. */
 void aspi_histogram_blocks(aspi_histogram *h, const asp_lattice *lattice);
 void aspi_histogram_add(aspi_histogram *h, const asp_ndf *ndf, asp_vec3 m, double weight);
-/* Each part of a cell to a fiftieth of what a sample of this size adds. */
 void aspi_histogram_integrate(aspi_histogram *h, const aspi_trial *t, aspi_facet_function *f,
-                              const void *context, double size);
+                              const void *context);
 /* p of counts against density, and of weight sums against value, the latter without the open cell. */
 double aspi_histogram_count_p(const aspi_histogram *h, double samples);
 double aspi_histogram_weight_p(const aspi_histogram *h, double samples);

@@ -243,7 +243,7 @@ static double integrate_blocks(aspi_histogram *h, const integrand *q)
 }
 
 void aspi_histogram_integrate(aspi_histogram *h, const aspi_trial *t, aspi_facet_function *f,
-                              const void *context, double size)
+                              const void *context)
 {
     integrand q;
     double inner = 0;
@@ -251,7 +251,7 @@ void aspi_histogram_integrate(aspi_histogram *h, const aspi_trial *t, aspi_facet
     q.t = t;
     q.f = f;
     q.context = context;
-    q.tolerance = 0.02 * size / (double)t->samples; /* a fiftieth of a sample */
+    q.tolerance = 0.02 / (double)t->samples; /* a fiftieth of a sample */
     q.planar = h->planar;
     q.order = h->planar ? 2 : RULE;
     aspi_gauss(q.order, q.node, q.weight);
