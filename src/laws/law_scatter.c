@@ -146,7 +146,7 @@ void aspi_law_weight(aspi_trial *t)
             apart = hypot(hypot(v->w.x + s.wo.x, v->w.y + s.wo.y), v->w.z + s.wo.z);
             size = fabs(t->ndf->i00) + fabs(t->ndf->i01) + fabs(t->ndf->i10) + fabs(t->ndf->i11);
             scale = hypot(h.x, h.y) / h.z + hypot(t->ndf->map.tx, t->ndf->map.ty) + 1e-3;
-            steps = 1e-15 / apart / h.z * (1 / h.z + size * scale / t->scale * 40 + 1 / s.wo.z);
+            steps = 2e-15 / apart / h.z * (1 / h.z + size * scale / t->scale * 40 + 1 / s.wo.z);
             if (steps > 1e-3 || pdf < 1e-200)
                 continue;
             w = s.weight;
