@@ -40,8 +40,6 @@
 #undef ASP_PRECISION
 #include "core/parse.c"
 #undef ASP_PRECISION
-#include "core/pieces.c"
-#undef ASP_PRECISION
 #include "core/sggx.c"
 #undef ASP_PRECISION
 #include "core/spec.c"
@@ -79,6 +77,8 @@
 #include "ndf/histogram_make.c"
 #undef ASP_PRECISION
 #include "ndf/histogram_rows.c"
+#undef ASP_PRECISION
+#include "ndf/pieces.c"
 #undef ASP_PRECISION
 #include "ndf/prepared.c"
 #undef ASP_PRECISION

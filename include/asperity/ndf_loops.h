@@ -126,6 +126,9 @@ static void ndf_reflect_1(const asp_shape *k, asp_real wx, asp_real wy, asp_real
 
 /* ---- loops */
 
+/* A distribution whose formula is long may bring this loop, sigma's or the visible normals' itself, in stages: it
+ * defines ASP_OWN_DENSITY_N, ASP_OWN_SIGMA_N or ASP_OWN_VISIBLE_N. */
+#ifndef ASP_OWN_DENSITY_N
 ASP_CLONES static void ndf_density_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT mx,
                                      const asp_real *ASP_RESTRICT my,
                                      const asp_real *ASP_RESTRICT mz, asp_real *ASP_RESTRICT out)
@@ -134,9 +137,8 @@ ASP_CLONES static void ndf_density_n(const asp_shape *k, size_t n, const asp_rea
     for (i = 0; i < n; i++)
         out[i] = ndf_world_density(k, aspi_vector(mx[i], my[i], mz[i]));
 }
+#endif
 
-/* A distribution whose formula is long may bring this loop or the visible normals' itself, in stages: it
- * defines ASP_OWN_SIGMA_N or ASP_OWN_VISIBLE_N. */
 #ifndef ASP_OWN_SIGMA_N
 ASP_CLONES static void ndf_sigma_n(const asp_shape *k, size_t n, asp_real sign,
                                    const asp_real *ASP_RESTRICT wx, const asp_real *ASP_RESTRICT wy,
@@ -239,5 +241,6 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
 }
 #undef NDF_DRAW
 #undef NDF_ANY_BELOW
+#undef ASP_OWN_DENSITY_N
 #undef ASP_OWN_SIGMA_N
 #undef ASP_OWN_VISIBLE_N

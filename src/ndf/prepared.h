@@ -42,11 +42,11 @@ typedef double aspi_log_density(const asp_ndf *k, double r2);
  * without a closed normalisation subtracts, and 0 within 1e-9 where f is normalised. */
 asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err);
 
-/* ---- the tables, for prepared_kernel.h: AREA and DEEP by pieces (core/pieces.h), the others
+/* ---- the tables, for prepared_kernel.h: AREA and DEEP by pieces (ndf/pieces.h), the others
  * coefficients of uniform cubic B-splines, divided by 6
  *
  * With T0 = 2 J(0), J as in student.h, slopes in units of T0 and q = |w|/(T0 s):
- *     AREA      E = J(mu) (mu + T0)/T0^2 over y = 1/(1 + q), by pieces (core/pieces.h)
+ *     AREA      E = J(mu) (mu + T0)/T0^2 over y = 1/(1 + q), by pieces (ndf/pieces.h)
  *     DEEP      (J/(P22(mu) T0^3 sqrt(1 + q)))^(-2/5), likewise, from q = 1/2 on: what is seen from below the
  *               mean plane keeps its relative accuracy. While P22 is the power -2n this is about n/(1 + q): J/P22 falls like
  *               n^(-5/2)

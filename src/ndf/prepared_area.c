@@ -3,7 +3,7 @@
 
 #define ASP_PRECISION 64
 #include "asperity/elementary.h"
-#include "core/pieces.h"
+#include "ndf/pieces.h"
 
 /* The trapezoidal rule in log rho converges fast where the density is smooth; bent ones take a finer step. */
 #define AREA_STEP 0.2

@@ -4,7 +4,7 @@
  * tables hold. */
 
 #include "asperity/facet.h"
-#include "core/pieces.h"
+#include "pieces.h"
 
 #ifndef PREPARED_KERNEL_NAMES
 #define PREPARED_KERNEL_NAMES

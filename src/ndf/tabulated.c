@@ -9,6 +9,7 @@
 
 #define TABULATED_KNOTS 30
 #define TABULATED_STEP 5.0
+#define TABULATED_BLOCK 128
 
 /* table[]: s^2, log of 1/mass, the last knot, the slope beyond it, then x, log P22 and d log P22/dx of the
  * knots. */
@@ -16,7 +17,8 @@ enum { TABULATED_S2, TABULATED_NORM, TABULATED_LAST, TABULATED_TAIL, TABULATED_X
        TABULATED_Y = TABULATED_X + TABULATED_KNOTS, TABULATED_M = TABULATED_Y + TABULATED_KNOTS,
        TABULATED_END = TABULATED_M + TABULATED_KNOTS };
 
-typedef char tabulated_fits[TABULATED_END <= PREPARED_OWN ? 1 : -1];
+/* rows of 32 are read, the last as well */
+typedef char tabulated_fits[TABULATED_M + 32 <= PREPARED_OWN ? 1 : -1];
 
 #define ASP_PRECISION 64
 #include "asperity/elementary.h"
@@ -161,7 +163,7 @@ static asp_status tabulated_prepare(asp_ndf *out, asp_error *err)
 }
 #undef ASP_PRECISION
 
-#define ASP_SCALAR_LOOPS        /* gcc 12 leaves the search in float64 as it is */
+#define ASP_SCALAR_LOOPS        /* of reflections: gcc 12 leaves the search in them as it is */
 #define ASP_NDF tabulated
 #define ASP_PRECISION 64
 #include "tabulated.c"
@@ -186,41 +188,77 @@ asp_status asp_tabulated_make(const asp_slope_samples *samples, const asp_map *m
 #else
 #include "asperity/elementary.h"
 
-#define tabulated_next ASP_NDF_NAME(_next)
+#include "asperity/facet.h"
+#include "ndf/pieces.h"
 
-/* One step of the search: to knot i + step, if x lies there or beyond. i + step is 31 at most: what is read
- * there behind the knots does not count. */
-ASP_FN asp_real tabulated_next(const asp_shape *k, asp_real i, asp_real step, asp_real x)
+#define tabulated_ring ASP_NDF_NAME(_ring)
+#define tabulated_between ASP_NDF_NAME(_between)
+#define tabulated_block ASP_NDF_NAME(_block)
+
+/* Where the ring of slopes lies: x of the knots. */
+ASP_FN asp_real tabulated_ring(const asp_shape *k, asp_real r2, asp_real z2)
 {
-    asp_real to = i + step, at = k->table[TABULATED_X + (int)to];
-    asp_real taken = aspi_select(x >= at, to, i);
-    return aspi_select(to <= k->table[TABULATED_LAST], taken, i);
+    return aspi_log((r2 + k->table[TABULATED_S2] * z2) / z2);
+}
+
+/* P22(x)/z2^2 from the knots before and after x, the same where the last is left behind: values y, slopes m. */
+ASP_FN asp_real tabulated_between(const asp_shape *k, asp_real x, asp_real z2, asp_real x0, asp_real x1,
+                                  asp_real y0, asp_real y1, asp_real m0, asp_real m1)
+{
+    asp_real d = x - x0, h = x1 - x0, t = d / aspi_select(h > R(0.0), h, R(1.0)), rise = y1 - y0;
+    asp_real line = y0 + d * k->table[TABULATED_TAIL];
+    asp_real cubic = y0 + t * (h * m0 + t * ((R(3.0) * rise - h * (R(2.0) * m0 + m1))
+                                             + t * (h * (m0 + m1) - R(2.0) * rise)));
+    return aspi_exp(k->table[TABULATED_NORM] + aspi_select(h > R(0.0), cubic, line)) / (z2 * z2);
 }
 
 ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
 {
-    asp_real x = aspi_log((r2 + k->table[TABULATED_S2] * z2) / z2), h, d, t, y, m, n, rise, line, cubic;
-    asp_real at = R(0.0), last = k->table[TABULATED_LAST];
-    int i, j;
-    at = tabulated_next(k, at, R(16.0), x);
-    at = tabulated_next(k, at, R(8.0), x);
-    at = tabulated_next(k, at, R(4.0), x);
-    at = tabulated_next(k, at, R(2.0), x);
-    at = tabulated_next(k, at, R(1.0), x);
-    i = (int)at;
-    j = (int)aspi_select(at < last, at + R(1.0), last);
-    d = x - k->table[TABULATED_X + i];
-    h = k->table[TABULATED_X + j] - k->table[TABULATED_X + i];
-    t = d / aspi_select(h > R(0.0), h, R(1.0));
-    y = k->table[TABULATED_Y + i];
-    m = k->table[TABULATED_M + i];
-    n = k->table[TABULATED_M + j];
-    rise = k->table[TABULATED_Y + j] - y;
-    line = y + d * k->table[TABULATED_TAIL];
-    cubic = y + t * (h * m + t * ((R(3.0) * rise - h * (R(2.0) * m + n))
-                                  + t * (h * (m + n) - R(2.0) * rise)));
-    y = aspi_select(h > R(0.0), cubic, line);
-    return aspi_exp(k->table[TABULATED_NORM] + y) / (z2 * z2);
+    const asp_real *x = k->table + TABULATED_X, *y = k->table + TABULATED_Y, *m = k->table + TABULATED_M;
+    asp_real at = tabulated_ring(k, r2, z2);
+    int last = (int)k->table[TABULATED_LAST], i = aspi_knot(x, last, at), j = i < last ? i + 1 : last;
+    return tabulated_between(k, at, z2, x[i], x[j], y[i], y[j], m[i], m[j]);
+}
+
+/* The same in loops, in stages. */
+ASP_FN void tabulated_block(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT mx,
+                            const asp_real *ASP_RESTRICT my, const asp_real *ASP_RESTRICT mz,
+                            asp_real *ASP_RESTRICT out)
+{
+    asp_real x[TABULATED_BLOCK], z2[TABULATED_BLOCK], x0[TABULATED_BLOCK], x1[TABULATED_BLOCK];
+    asp_real y0[TABULATED_BLOCK], y1[TABULATED_BLOCK], m0[TABULATED_BLOCK], m1[TABULATED_BLOCK];
+    int before[TABULATED_BLOCK], after[TABULATED_BLOCK], last = (int)k->table[TABULATED_LAST];
+    size_t i;
+    if (!n)
+        return;
+    for (i = 0; i < n; i++) {
+        asp_v3 m = aspi_facet(k, aspi_vector(mx[i], my[i], mz[i]));
+        z2[i] = m.z * m.z;
+        x[i] = tabulated_ring(k, aspi_length2(m), z2[i]);
+    }
+    aspi_knots_n(k->table + TABULATED_X, last, n, x, before);
+    for (i = 0; i < n; i++)
+        after[i] = before[i] < last ? before[i] + 1 : last;
+    aspi_rows_n(k->table + TABULATED_X, n, before, x0);
+    aspi_rows_n(k->table + TABULATED_X, n, after, x1);
+    aspi_rows_n(k->table + TABULATED_Y, n, before, y0);
+    aspi_rows_n(k->table + TABULATED_Y, n, after, y1);
+    aspi_rows_n(k->table + TABULATED_M, n, before, m0);
+    aspi_rows_n(k->table + TABULATED_M, n, after, m1);
+    for (i = 0; i < n; i++)
+        out[i] = aspi_density_result(k, tabulated_between(k, x[i], z2[i], x0[i], x1[i], y0[i], y1[i], m0[i], m1[i]),
+                                     mz[i]);
+}
+
+#define ASP_OWN_DENSITY_N
+ASP_CLONES static void ndf_density_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT mx,
+                                     const asp_real *ASP_RESTRICT my, const asp_real *ASP_RESTRICT mz,
+                                     asp_real *ASP_RESTRICT out)
+{
+    size_t from;
+    for (from = 0; from < n; from += TABULATED_BLOCK)
+        tabulated_block(k, n - from < TABULATED_BLOCK ? n - from : TABULATED_BLOCK, mx + from, my + from, mz + from,
+                        out + from);
 }
 
 #define PREPARED_BENT

@@ -1,4 +1,4 @@
-/* pieces.h - polynomials of degree 6 by pieces, two to an octave
+/* pieces.h - tables of 32: polynomials of degree 6 by pieces, two to an octave; knots and rows
  *
  * A function with structure on several scales is cut into ASP_PIECES pieces: two to each octave of some
  * q >= 0, the first from q = 0 and the last without end. Which piece, q says; the polynomial's argument is
@@ -17,7 +17,17 @@
 #define aspi_pieces ASP_NAME(aspi_pieces)
 #define aspi_pieces_n ASP_NAME(aspi_pieces_n)
 
-/* aspi_pieces in a loop; q, y and out do not overlap. */
+#define aspi_knot ASP_NAME(aspi_knot)
+#define aspi_knots_n ASP_NAME(aspi_knots_n)
+#define aspi_rows_n ASP_NAME(aspi_rows_n)
+
+/* Loops; inputs and outputs do not overlap. Of a row 32 numbers are read, whatever stands there. */
+void aspi_knots_n_64(const double *knots, int last, size_t n, const double *x, int *out);
+void aspi_knots_n_32(const float *knots, int last, size_t n, const float *x, int *out);
+/* out[i] = row[at[i]] */
+void aspi_rows_n_64(const double *row, size_t n, const int *at, double *out);
+void aspi_rows_n_32(const float *row, size_t n, const int *at, float *out);
+/* aspi_pieces */
 void aspi_pieces_n_64(const double *table, int first, size_t n, const double *q, const double *y, double *out);
 void aspi_pieces_n_32(const float *table, int first, size_t n, const float *q, const float *y, float *out);
 #endif
@@ -49,5 +59,16 @@ ASP_FN asp_real aspi_pieces(const asp_real *table, int first, asp_real q, asp_re
     asp_real high = (C(4) + C(5) * t) + C(6) * t2;
 #undef C
     return low + high * (t2 * t2);
+}
+
+/* The last of knots 0 ... last, growing, last < 32, that is not above x; 0 if there is none. */
+ASP_FN int aspi_knot(const asp_real *knots, int last, asp_real x)
+{
+    int i = 0, step, to;
+    for (step = ASP_PIECES / 2; step; step /= 2) {
+        to = i + step;
+        i = ((x >= knots[to]) & (to <= last)) ? to : i;
+    }
+    return i;
 }
 #endif
