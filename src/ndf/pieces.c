@@ -29,9 +29,35 @@
 #define SOME(n, i) ((n) - (i) < 16 ? (__mmask16)((1u << ((n) - (i))) - 1u) : (__mmask16)0xffffu)
 #define PLUS_TIMES(a, b, c) _mm512_add_ps(a, _mm512_mul_ps(b, c))
 
-/* aspi_pieces of 16 elements at a time. */
+/* aspi_pieces, 8 or 16 elements at a time. */
+#define FROM_64(row, at, upper) \
+    _mm512_mask_blend_pd(upper, _mm512_permutex2var_pd(_mm512_loadu_pd(row), at, _mm512_loadu_pd((row) + 8)), \
+                         _mm512_permutex2var_pd(_mm512_loadu_pd((row) + 16), at, _mm512_loadu_pd((row) + 24)))
+#define ROW_64(r) FROM_64(table + (r) * ASP_PIECES, piece, upper)
+#define PLUS_TIMES_64(a, b, c) _mm512_add_pd(a, _mm512_mul_pd(b, c))
+
 __attribute__((target("avx512f")))
-static void wide_pieces(const float *table, int first, size_t n, const float *q, const float *y, float *out)
+static void wide_pieces_64(const double *table, int first, size_t n, const double *q, const double *y, double *out)
+{
+    size_t i;
+    for (i = 0; i < n; i += 8) {
+        __mmask8 some = n - i < 8 ? (__mmask8)((1u << (n - i)) - 1u) : (__mmask8)0xffu, upper;
+        __m512i bits = _mm512_castpd_si512(_mm512_maskz_loadu_pd(some, q + i));
+        __m512i piece = _mm512_sub_epi64(_mm512_maskz_srli_epi64(some, bits, 51), _mm512_set1_epi64(first));
+        __m512d t, t2, low, high;
+        piece = _mm512_maskz_max_epi64(some, piece, _mm512_setzero_si512());
+        piece = _mm512_maskz_min_epi64(some, piece, _mm512_set1_epi64(ASP_PIECES - 1));
+        upper = _mm512_test_epi64_mask(piece, _mm512_set1_epi64(16));
+        t = _mm512_sub_pd(_mm512_maskz_loadu_pd(some, y + i), ROW_64(0));
+        t2 = _mm512_mul_pd(t, t);
+        low = PLUS_TIMES_64(PLUS_TIMES_64(ROW_64(1), ROW_64(2), t), PLUS_TIMES_64(ROW_64(3), ROW_64(4), t), t2);
+        high = PLUS_TIMES_64(PLUS_TIMES_64(ROW_64(5), ROW_64(6), t), ROW_64(7), t2);
+        _mm512_mask_storeu_pd(out + i, some, PLUS_TIMES_64(low, high, _mm512_mul_pd(t2, t2)));
+    }
+}
+
+__attribute__((target("avx512f")))
+static void wide_pieces_32(const float *table, int first, size_t n, const float *q, const float *y, float *out)
 {
     size_t i;
     for (i = 0; i < n; i += 16) {
@@ -50,7 +76,7 @@ static void wide_pieces(const float *table, int first, size_t n, const float *q,
 }
 
 __attribute__((target("avx512f")))
-static void wide_knots(const float *knots, int last, size_t n, const float *x, int *out)
+static void wide_knots_32(const float *knots, int last, size_t n, const float *x, int *out)
 {
     size_t i;
     int step;
@@ -69,7 +95,7 @@ static void wide_knots(const float *knots, int last, size_t n, const float *x, i
 }
 
 __attribute__((target("avx512f")))
-static void wide_rows(const float *row, size_t n, const int *at, float *out)
+static void wide_rows_32(const float *row, size_t n, const int *at, float *out)
 {
     size_t i;
     for (i = 0; i < n; i += 16) {
@@ -79,6 +105,9 @@ static void wide_rows(const float *row, size_t n, const int *at, float *out)
     }
 }
 #undef FROM
+#undef FROM_64
+#undef ROW_64
+#undef PLUS_TIMES_64
 #undef ROW
 #undef SOME
 #undef PLUS_TIMES
@@ -95,9 +124,9 @@ ASP_CLONES static void plain_pieces(const asp_real *table, int first, size_t n, 
 
 void aspi_pieces_n(const asp_real *table, int first, size_t n, const asp_real *q, const asp_real *y, asp_real *out)
 {
-#if defined(ASPI_PIECES_AVX512) && ASP_PRECISION == 32
+#ifdef ASPI_PIECES_AVX512
     if (__builtin_cpu_supports("avx512f")) {
-        wide_pieces(table, first, n, q, y, out);
+        ASP_NAME(wide_pieces)(table, first, n, q, y, out);
         return;
     }
 #endif
@@ -116,7 +145,7 @@ void aspi_knots_n(const asp_real *knots, int last, size_t n, const asp_real *x, 
 {
 #if defined(ASPI_PIECES_AVX512) && ASP_PRECISION == 32
     if (__builtin_cpu_supports("avx512f")) {
-        wide_knots(knots, last, n, x, out);
+        wide_knots_32(knots, last, n, x, out);
         return;
     }
 #endif
@@ -135,7 +164,7 @@ void aspi_rows_n(const asp_real *row, size_t n, const int *at, asp_real *out)
 {
 #if defined(ASPI_PIECES_AVX512) && ASP_PRECISION == 32
     if (__builtin_cpu_supports("avx512f")) {
-        wide_rows(row, n, at, out);
+        wide_rows_32(row, n, at, out);
         return;
     }
 #endif
