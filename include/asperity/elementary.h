@@ -2,8 +2,8 @@
  *
  * Own, because libm's are not vectorised by the compilers without -ffast-math and differ from one
  * libm to the next; these give the same bits everywhere. Series are Taylor's, with the number of
- * terms that the reduced range asks for, so that no coefficient needs a table; float32's logarithm
- * alone has a fitted polynomial. Measured bounds in units in the last place, float64 and float32
+ * terms that the reduced range asks for, so that no coefficient needs a table; float32's logarithm,
+ * sine and cosine alone have fitted polynomials. Measured bounds in units in the last place, float64 and float32
  * (tests/test_elementary.c, 10^6 random arguments per row):
  *     exp 1.0, 1.1    expm1 2.0, 2.0    log 1.0, 1.0    log1p 1.5, 1.6
  *     sincos2pi absolute 1.8e-16, 1e-7    angle 2.6, 2.9 */
@@ -103,7 +103,11 @@ ASP_FN asp_real aspi_select(int condition, asp_real a, asp_real b)
 
 ASP_FN asp_real aspi_abs(asp_real x)
 {
-    return aspi_from_bits(aspi_to_bits(x) & (asp_bits)~ASP_SIGN_BIT);
+#if ASP_PRECISION == 64
+    return fabs(x);
+#else
+    return fabsf(x);
+#endif
 }
 
 ASP_FN asp_real aspi_sqrt(asp_real x)
@@ -195,7 +199,7 @@ ASP_FN asp_real aspi_expm1(asp_real x) { return aspi_exp_both(x).y; }
 
 /* f - log(1 + f) for 1 + f within [sqrt(1/2), sqrt(2)). In float64 by the series of 2 atanh(s) =
  * log(1 + f), s = f/(2 + f), |s| <= 0.1716: f - 2 atanh(s) = s (f - s^2 p). In float32 a polynomial,
- * which saves the division: f^2/2 - f^3 q, q by scripts/log_series.py, relative error 4e-9. */
+ * which saves the division: f^2/2 - f^3 q, q by scripts/series.py, relative error 4e-9. */
 ASP_FN asp_real aspi_log_rest(asp_real f)
 {
 #if ASP_PRECISION == 64
@@ -293,13 +297,13 @@ ASP_FN asp_v2 aspi_log1p_sum(asp_real x, asp_real low)
     return out;
 }
 
+#if ASP_PRECISION == 64
 /* sine and cosine of x, |x| <= pi/4, as .x = cos, .y = sin. */
 ASP_FN asp_v2 aspi_sin_cos(asp_real x)
 {
     asp_real z = x * x;
     asp_real s, c;
     asp_v2 out;
-#if ASP_PRECISION == 64
     s = R(1.0 / 355687428096000.0);
     s = s * z - R(1.0 / 1307674368000.0);
     s = s * z + R(1.0 / 6227020800.0);
@@ -310,11 +314,6 @@ ASP_FN asp_v2 aspi_sin_cos(asp_real x)
     c = c * z - R(1.0 / 3628800.0);
     s = s * z + R(1.0 / 362880.0);
     c = c * z + R(1.0 / 40320.0);
-#else
-    s = R(1.0 / 362880.0);
-    c = R(-1.0 / 3628800.0);
-    c = c * z + R(1.0 / 40320.0);
-#endif
     s = s * z - R(1.0 / 5040.0);
     s = s * z + R(1.0 / 120.0);
     s = s * z - R(1.0 / 6.0);
@@ -343,6 +342,27 @@ ASP_FN asp_v2 aspi_sincos2pi(asp_real u)
     out.y = aspi_from_bits((asp_bits)((s ^ flip) ^ sign_s));
     return out;
 }
+#else
+/* cos and sin of 2 pi u as .x and .y, |u| < 2^20. With x = 1 - 4 |t|, t what a whole number of turns leaves,
+ * they are sin(pi x/2) = x + x (1 - x^2) g(x^2) and, with t's sign, cos(pi x/2) = (1 - x^2)(1 - x^2 r(x^2)):
+ * no quarters to swap, and little left to round near 1. g and r by scripts/series.py, errors 1e-8 and 1e-9. */
+ASP_FN asp_v2 aspi_sincos2pi(asp_real u)
+{
+    asp_real t = u - ((u + R(ASP_ROUND_SHIFT)) - R(ASP_ROUND_SHIFT));
+    asp_real x = R(1.0) - R(4.0) * aspi_abs(t), z = x * x;
+    asp_real rest = R(1.0) - z, g = R(-0.0001499694053), r = R(-2.382530163e-5);
+    asp_v2 out;
+    g = g * z + R(0.004520557049);
+    r = r * z + R(0.000893956649);
+    g = g * z + R(-0.07516691423);
+    r = r * z + R(-0.01996884486);
+    g = g * z + R(0.5707963001);
+    r = r * z + R(0.2337005466);
+    out.x = x + (x * rest) * g;
+    out.y = copysignf(rest - (rest * z) * r, t);
+    return out;
+}
+#endif
 
 /* Angle of the vector (x, y) to the x axis, x >= 0, y >= 0; 0 for the zero vector. The nearest of 0,
  * pi/8 and pi/4 is taken off by the tangent of a difference, which leaves at most tan(pi/16). */

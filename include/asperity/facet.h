@@ -20,6 +20,7 @@
 #define aspi_masked ASP_NAME(aspi_masked)
 #define aspi_hidden ASP_NAME(aspi_hidden)
 #define aspi_joint ASP_NAME(aspi_joint)
+#define aspi_lobe_density ASP_NAME(aspi_lobe_density)
 #define aspi_finite ASP_NAME(aspi_finite)
 
 /* Facets closer to the vertical than this have density 0; z^4 must not underflow. */
@@ -128,6 +129,13 @@ ASP_FN asp_v3 aspi_facet_back(const asp_shape *k, asp_v3 m)
 ASP_FN asp_real aspi_density_result(const asp_shape *k, asp_real standard, asp_real mz)
 {
     return aspi_select(mz <= ASP_FLAT, R(0.0), aspi_finite(standard * k->inv_det));
+}
+
+/* Visible normals through reflection: D / (4 sigma_i). */
+ASP_FN asp_real aspi_lobe_density(asp_real ci, asp_real D, asp_real sigma_i)
+{
+    asp_real p = aspi_finite(R(0.25) * D / (sigma_i < ASP_SMALLEST ? ASP_SMALLEST : sigma_i));
+    return ci <= R(0.0) ? R(0.0) : p;
 }
 
 /* The projected area that masking divides by, w.z / G1: never less than w.z. `min`: Walter et al.

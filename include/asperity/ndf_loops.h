@@ -24,6 +24,26 @@ ASP_FN asp_real ndf_sigma_at(const asp_shape *k, asp_v3 v)
 
 /* ---- seen through the map */
 
+/* A formula of the visible normals may come in two steps too, the first of them without random numbers:
+ * ASP_NDF_VISIBLE_STEPS says so. */
+#ifdef ASP_NDF_VISIBLE_STEPS
+ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+{
+    return ndf_visible_end(k, ndf_visible_begin(k, v), u1, u2);
+}
+#else
+ASP_FN asp_v3 ndf_visible_begin(const asp_shape *k, asp_v3 v)
+{
+    (void)k;
+    return v;
+}
+
+ASP_FN asp_v3 ndf_visible_end(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+{
+    return ndf_visible(k, v, u1, u2);
+}
+#endif
+
 ASP_FN asp_real ndf_world_density(const asp_shape *k, asp_v3 m)
 {
     return aspi_density_result(k, ndf_density_at(k, aspi_facet(k, m)), m.z);
@@ -43,46 +63,50 @@ ASP_FN asp_v3 ndf_world_normal(const asp_shape *k, asp_real u1, asp_real u2)
  * bits is ndf_sigma_up, and ASP_NDF_SIGMA_UP says that there is one. */
 #ifdef ASP_NDF_SIGMA_UP
 #define NDF_ANY_BELOW(bits) ((bits) >> (8 * sizeof(bits) - 1))
+#define NDF_NOTE(bits, more) ((bits) |= (more))
 ASP_FN asp_real ndf_sigma_up_at(const asp_shape *k, asp_v3 v)
 {
     return ndf_sigma_up(k, v.z, aspi_length2(v));
 }
 #else
 #define NDF_ANY_BELOW(bits) ((void)(bits), 0)
+#define NDF_NOTE(bits, more) ((void)(more))
 ASP_FN asp_real ndf_sigma_up_at(const asp_shape *k, asp_v3 v) { return ndf_sigma_at(k, v); }
 #endif
 
-/* What is known of a reflection once the facet is drawn; not yet sigma. m is the standard surface's as
- * ndf_visible drew it, of which D is simpler; or where the visible normals come from stages of their own
- * the unit normal that they give. */
-#ifdef ASP_OWN_VISIBLE_N
-#define NDF_DRAW(k, wi, v, u1, u2) ndf_world_visible(k, wi, u1, u2)
-#else
-#define NDF_DRAW(k, wi, v, u1, u2) ndf_visible(k, v, u1, u2)
-#endif
-
-ASP_FN void ndf_reflect(const asp_shape *k, asp_v3 wi, asp_v3 m, asp_mirrored *out)
+/* A reflection in steps, which loops take one by one: short loops let the processor overlap several
+ * elements. What stands between the steps is the facet drawn, m: the standard surface's as ndf_visible gave
+ * it, of which D is simpler, made as long as its world's unit normal `back`; or where the visible normals
+ * come from stages of their own the unit normal that they give, twice. */
+ASP_FN void ndf_unit(const asp_shape *k, asp_v3 *m, asp_v3 *back)
 {
 #ifdef ASP_OWN_VISIBLE_N
-    asp_v3 back = m, wo;
-    out->density = ndf_world_density(k, m);
+    (void)k;
+    *back = *m;
 #else
-    asp_v3 back = aspi_facet_back(k, m), wo;
-    asp_real scale = R(1.0) / aspi_sqrt(aspi_max(aspi_dot(back, back), ASP_TINY));
-    back.x = back.x * scale;
-    back.y = back.y * scale;
-    back.z = back.z * scale;
-    m.x = m.x * scale;
-    m.y = m.y * scale;
-    m.z = back.z;
-    out->density = aspi_density_result(k, ndf_density_at(k, m), m.z);
+    asp_real scale;
+    *back = aspi_facet_back(k, *m);
+    scale = R(1.0) / aspi_sqrt(aspi_max(aspi_dot(*back, *back), ASP_TINY));
+    back->x = back->x * scale;
+    back->y = back->y * scale;
+    back->z = back->z * scale;
+    m->x = m->x * scale;
+    m->y = m->y * scale;
+    m->z = back->z;
 #endif
-    wo = aspi_reflect(wi, back);
-    out->wo_x = wo.x;
-    out->wo_y = wo.y;
-    out->wo_z = wo.z;
-    out->m_z = back.z;
-    out->cosine = aspi_dot(wi, back);
+}
+
+/* The density of the mirrored direction. One that is a quotient, 1/ndf_density_over, saves a division. */
+ASP_FN asp_real ndf_lobe(const asp_shape *k, asp_real ci, asp_v3 m, asp_real sigma_i)
+{
+#ifdef ASP_OWN_VISIBLE_N
+    return aspi_lobe_density(ci, ndf_world_density(k, m), sigma_i);
+#elif defined(ASP_NDF_DENSITY_OVER)
+    asp_real over = ndf_density_over(k, aspi_length2(m), m.z * m.z) * sigma_i;
+    return aspi_lobe_density(m.z <= ASP_FLAT ? R(0.0) : ci, k->inv_det, over);
+#else
+    return aspi_lobe_density(ci, aspi_density_result(k, ndf_density_at(k, m), m.z), sigma_i);
+#endif
 }
 
 /* ---- single calls */
@@ -115,13 +139,25 @@ static void ndf_normal_1(const asp_shape *k, asp_real u1, asp_real u2, asp_real 
 }
 
 /* What calls in turn would pass through memory stays in registers. */
-static void ndf_reflect_1(const asp_shape *k, asp_real wx, asp_real wy, asp_real wz, asp_real u1,
-                          asp_real u2, asp_mirrored *out)
+ASP_CLONES_SINGLE static void ndf_reflect_1(const asp_shape *k, asp_real wx, asp_real wy, asp_real wz,
+                                            asp_real u1, asp_real u2, asp_mirrored *out)
 {
-    asp_v3 wi = aspi_vector(wx, wy, wz), v = aspi_view(k, wi);
+    asp_v3 wi = aspi_vector(wx, wy, wz), v = aspi_view(k, wi), m, back, wo;
+#ifdef ASP_OWN_VISIBLE_N
+    m = ndf_world_visible(k, wi, u1, u2);
+#else
+    m = ndf_visible(k, v, u1, u2);
+#endif
+    ndf_unit(k, &m, &back);
+    wo = aspi_reflect(wi, back);
+    out->wo_x = wo.x;
+    out->wo_y = wo.y;
+    out->wo_z = wo.z;
+    out->m_z = back.z;
+    out->cosine = aspi_dot(wi, back);
     out->sigma_i = ndf_sigma_at(k, v);
-    ndf_reflect(k, wi, NDF_DRAW(k, wi, v, u1, u2), out);
-    out->sigma_o = ndf_sigma_at(k, aspi_view(k, aspi_vector(out->wo_x, out->wo_y, out->wo_z)));
+    out->pdf = ndf_lobe(k, wi.z, m, out->sigma_i);
+    out->sigma_o = ndf_sigma_at(k, aspi_view(k, wo));
 }
 
 /* ---- loops */
@@ -182,8 +218,8 @@ ASP_CLONES static void ndf_normal_n(const asp_shape *k, size_t n, const asp_real
     }
 }
 
-/* In stages, short enough for the processor to overlap several elements. The sign bits tell whether any
- * direction that matters lies below the mean plane: a wo that points down carries no weight. */
+/* The sign bits tell whether any direction that matters lies below the mean plane: a wo that points down
+ * carries no weight. */
 ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT wx,
                                      const asp_real *ASP_RESTRICT wy,
                                      const asp_real *ASP_RESTRICT wz,
@@ -191,56 +227,78 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
                                      const asp_real *ASP_RESTRICT u2, const asp_mirrored_s *out)
 {
     asp_real *ASP_RESTRICT ox = out->wo_x, *ASP_RESTRICT oy = out->wo_y, *ASP_RESTRICT oz = out->wo_z;
-    asp_real *ASP_RESTRICT mz = out->m_z, *ASP_RESTRICT c = out->cosine, *ASP_RESTRICT D = out->density;
+    asp_real *ASP_RESTRICT mz = out->m_z, *ASP_RESTRICT c = out->cosine, *ASP_RESTRICT p = out->pdf;
     asp_real *ASP_RESTRICT si = out->sigma_i, *ASP_RESTRICT so = out->sigma_o;
-    asp_real x[ASP_BLOCK], y[ASP_BLOCK], z[ASP_BLOCK];
+    asp_real bx[ASP_BLOCK], by[ASP_BLOCK], x[ASP_BLOCK], y[ASP_BLOCK], z[ASP_BLOCK];
+    asp_real *m_x = x, *m_y = y, *m_z = z;
     asp_bits below = 0;
     size_t i;
 #ifndef ASP_OWN_VISIBLE_N
-    ASP_IN_PLACE
     for (i = 0; i < n; i++) {
         asp_v3 v = aspi_view(k, aspi_vector(wx[i], wy[i], wz[i]));
-        asp_v3 m = ndf_visible(k, v, u1[i], u2[i]);
+        asp_v3 m = ndf_visible_begin(k, v);
         si[i] = ndf_sigma_up_at(k, v);
-        below |= aspi_to_bits(v.z);
+        NDF_NOTE(below, aspi_to_bits(v.z));
         x[i] = m.x;
         y[i] = m.y;
         z[i] = m.z;
     }
     if (NDF_ANY_BELOW(below))
         ndf_sigma_n(k, n, R(1.0), wx, wy, wz, si);
-#else
-    (void)below;
-    ndf_visible_n(k, n, wx, wy, wz, u1, u2, x, y, z);
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        asp_v3 m = ndf_visible_end(k, aspi_vector(x[i], y[i], z[i]), u1[i], u2[i]);
+        x[i] = m.x;
+        y[i] = m.y;
+        z[i] = m.z;
+    }
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        asp_v3 m = aspi_vector(x[i], y[i], z[i]), back;
+        ndf_unit(k, &m, &back);
+        x[i] = m.x;
+        y[i] = m.y;
+        z[i] = m.z;
+        bx[i] = back.x;
+        by[i] = back.y;
+        mz[i] = back.z;
+    }
+#endif
+#ifdef ASP_OWN_VISIBLE_N
+    m_x = bx;
+    m_y = by;
+    m_z = mz;
+    ndf_visible_n(k, n, wx, wy, wz, u1, u2, bx, by, mz);
     ndf_sigma_n(k, n, R(1.0), wx, wy, wz, si);
 #endif
     ASP_IN_PLACE
-    for (i = 0; i < n; i++) {
-        asp_mirrored r;
-        ndf_reflect(k, aspi_vector(wx[i], wy[i], wz[i]), aspi_vector(x[i], y[i], z[i]), &r);
-        ox[i] = r.wo_x;
-        oy[i] = r.wo_y;
-        oz[i] = r.wo_z;
-        mz[i] = r.m_z;
-        c[i] = r.cosine;
-        D[i] = r.density;
-    }
-#ifndef ASP_OWN_SIGMA_N
+    for (i = 0; i < n; i++)
+        p[i] = ndf_lobe(k, wz[i], aspi_vector(m_x[i], m_y[i], m_z[i]), si[i]);
     below = 0;
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
-        asp_v3 v = aspi_view(k, aspi_vector(ox[i], oy[i], oz[i]));
+        asp_v3 wi = aspi_vector(wx[i], wy[i], wz[i]), back = aspi_vector(bx[i], by[i], mz[i]), v;
+        asp_v3 wo = aspi_reflect(wi, back);
+        c[i] = aspi_dot(wi, back);
+        ox[i] = wo.x;
+        oy[i] = wo.y;
+        oz[i] = wo.z;
+        v = aspi_view(k, wo);
+#ifndef ASP_OWN_SIGMA_N
         so[i] = ndf_sigma_up_at(k, v);
-        below |= aspi_to_bits(v.z) & (asp_bits)~aspi_to_bits(oz[i]);
+#endif
+        NDF_NOTE(below, aspi_to_bits(v.z) & (asp_bits)~aspi_to_bits(wo.z));
     }
+#ifndef ASP_OWN_SIGMA_N
     if (NDF_ANY_BELOW(below))
         ndf_sigma_n(k, n, R(1.0), ox, oy, oz, so);
 #else
+    (void)below;
     ndf_sigma_n(k, n, R(1.0), ox, oy, oz, so);
 #endif
 }
-#undef NDF_DRAW
 #undef NDF_ANY_BELOW
 #undef ASP_OWN_DENSITY_N
+#undef NDF_NOTE
 #undef ASP_OWN_SIGMA_N
 #undef ASP_OWN_VISIBLE_N

@@ -11,6 +11,7 @@
 enum {
     ASPI_FRESNEL_ONE,          /* 1 */
     ASPI_FRESNEL_CONDUCTOR,    /* c = eta, d = k */
+    ASPI_FRESNEL_METAL,        /* the same, all of them within [0.01, 100] */
     ASPI_FRESNEL_F82,          /* c = f0, d = tint */
     ASPI_FRESNEL_DIELECTRIC,   /* c.r = eta */
     ASPI_FRESNEL_FILM          /* a table in energy, from ENERGY_FILM on (bsdf/energy.h) */
@@ -36,7 +37,7 @@ struct asp_bsdf {
     /* Fills out->energy and derived colours, when distribution and keys are known; may be NULL. */
     asp_status (*prepare)(asp_material *out, asp_error *err);
     /* f from F and from x = D G2 / (4 cos_i cos_o), with y multiplying what does not come from
-     * facets; the caller may scale x and y alike. The loop's r, g, b hold F and receive f. */
+     * facets; the caller may scale x and y alike. The loop's r, g, b hold F and receive f. NULL is f = F x. */
     void (*value)(const asp_material *mat, double F_r, double F_g, double F_b, double x, double y,
                   asp_rgb *out);
     void (*valuef)(const asp_materialf *mat, float F_r, float F_g, float F_b, float x, float y,
@@ -99,6 +100,7 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
     { "transport", "radiance (default) or importance: whether what crosses is scaled by 1/eta^2" }
 
 /* The formulas of a record, in the order of struct asp_bsdf. */
+#define ASPI_BSDF_FACETS NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL
 #define ASPI_BSDF_OPS(n) n##_value_1_64, n##_value_1_32, n##_value_n_64, n##_value_n_32, \
     n##_share_1_64, n##_share_1_32, n##_share_n_64, n##_share_n_32, NULL, NULL, NULL, NULL, NULL, NULL
 #define ASPI_BSDF_OWN(n) NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, \

@@ -7,6 +7,7 @@
 #ifndef ASPI_FACET_FRESNEL_NAMES
 #define ASPI_FACET_FRESNEL_NAMES
 #define aspi_fresnel ASP_NAME(aspi_fresnel)
+#define aspi_fresnel_metal ASP_NAME(aspi_fresnel_metal)
 #define aspi_fresnel_film ASP_NAME(aspi_fresnel_film)
 #endif
 
@@ -30,10 +31,43 @@ ASP_FN asp_real aspi_fresnel_film(const asp_real *f, asp_real c)
     return y > R(1.0) ? R(1.0) : y;
 }
 
-/* Numbers go by pointer: small structs of floats stall in the usual calling convention. */
-ASP_FN void aspi_fresnel(const asp_mat *mat, asp_real c, asp_real F[3])
+/* The metal's three channels side by side, which the compiler makes one vector of four. */
+ASP_FN void aspi_fresnel_metal(const asp_mat *mat, asp_real c, asp_real by, asp_real F[3])
 {
-    asp_real unit = aspi_unit_cosine(c);
+    asp_real unit = aspi_unit_cosine(c), x[4], y[4];
+    asp_real eta[4], k[4];
+    asp_v2 r, g, b;
+    int i;
+    eta[0] = mat->c.r;
+    eta[1] = mat->c.g;
+    eta[2] = eta[3] = mat->c.b;
+    k[0] = mat->d.r;
+    k[1] = mat->d.g;
+    k[2] = k[3] = mat->d.b;
+    for (i = 0; i < 4; i++) {
+        asp_v2 ratio = aspi_conductor_ratio(unit, eta[i], k[i]);
+        x[i] = ratio.x;
+        y[i] = ratio.y;
+    }
+    r.x = x[0];
+    r.y = y[0];
+    g.x = x[1];
+    g.y = y[1];
+    b.x = x[2];
+    b.y = y[2];
+    aspi_metal_ratios(r, g, b, by, F);
+}
+
+/* The Fresnel term at the cosine c, times `by`. Numbers go by pointer: small structs of floats stall in
+ * the usual calling convention. */
+ASP_FN void aspi_fresnel(const asp_mat *mat, asp_real c, asp_real by, asp_real F[3])
+{
+    asp_real unit;
+    if (mat->fresnel == ASPI_FRESNEL_METAL) {
+        aspi_fresnel_metal(mat, c, by, F);
+        return;
+    }
+    unit = aspi_unit_cosine(c);
     switch (mat->fresnel) {
     case ASPI_FRESNEL_CONDUCTOR:
         F[0] = aspi_fresnel_conductor_at(unit, mat->c.r, mat->d.r);
@@ -56,5 +90,8 @@ ASP_FN void aspi_fresnel(const asp_mat *mat, asp_real c, asp_real F[3])
     default:
         F[0] = F[1] = F[2] = c == c ? R(1.0) : c;
     }
+    F[0] = F[0] * by;
+    F[1] = F[1] * by;
+    F[2] = F[2] * by;
 }
 #endif

@@ -13,8 +13,10 @@
 #define aspi_above ASP_NAME(aspi_above)
 #define aspi_half_vector ASP_NAME(aspi_half_vector)
 #define aspi_cosine_lobe ASP_NAME(aspi_cosine_lobe)
+#define aspi_reflected_joint ASP_NAME(aspi_reflected_joint)
+#define aspi_lit ASP_NAME(aspi_lit)
 #define aspi_facet_part ASP_NAME(aspi_facet_part)
-#define aspi_lobe_density ASP_NAME(aspi_lobe_density)
+#define aspi_facet_weight ASP_NAME(aspi_facet_weight)
 #define aspi_mixed_density ASP_NAME(aspi_mixed_density)
 #endif
 
@@ -56,21 +58,35 @@ ASP_FN asp_v3 aspi_cosine_lobe(asp_v3 wi, asp_real u1, asp_real u2)
     return w;
 }
 
-/* `scale` J, 0 where a direction is below the horizon; scale is D/4 for f, sigma_i for a weight. */
-ASP_FN asp_real aspi_facet_part(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c,
-                           asp_real sigma_i, asp_real sigma_o, asp_real scale, int mask)
+/* J of a reflection. */
+ASP_FN asp_real aspi_reflected_joint(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c,
+                                     asp_real sigma_i, asp_real sigma_o, int mask)
 {
     asp_real si = aspi_masked(k, wi, sigma_i, mask), so = aspi_masked(k, wo, sigma_o, mask);
-    asp_real x = aspi_finite(scale * aspi_joint(wi.z, wo.z, si, so, mz, c, c, mask));
+    return aspi_joint(wi.z, wo.z, si, so, mz, c, c, mask);
+}
+
+/* x, 0 where a direction is below the horizon. */
+ASP_FN asp_real aspi_lit(asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c, asp_real x)
+{
     asp_real dark = aspi_min(aspi_min(wi.z, wo.z), aspi_min(c, mz));
     return dark <= R(0.0) ? R(0.0) : x;
 }
 
-/* Visible normals through reflection: D / (4 sigma_i). */
-ASP_FN asp_real aspi_lobe_density(asp_real ci, asp_real D, asp_real sigma_i)
+/* `scale` J; scale is D/4 for f. */
+ASP_FN asp_real aspi_facet_part(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c,
+                           asp_real sigma_i, asp_real sigma_o, asp_real scale, int mask)
 {
-    asp_real p = aspi_finite(R(0.25) * D / (sigma_i < ASP_SMALLEST ? ASP_SMALLEST : sigma_i));
-    return ci <= R(0.0) ? R(0.0) : p;
+    asp_real J = aspi_reflected_joint(k, wi, wo, mz, c, sigma_i, sigma_o, mask);
+    return aspi_lit(wi, wo, mz, c, aspi_finite(scale * J));
+}
+
+/* The weight of visible normals but for F, sigma_i cos_o J; no more than 1 or, of V-cavities, sigma_i/cos_i. */
+ASP_FN asp_real aspi_facet_weight(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c,
+                             asp_real sigma_i, asp_real sigma_o, int mask)
+{
+    asp_real J = aspi_reflected_joint(k, wi, wo, mz, c, sigma_i, sigma_o, mask);
+    return aspi_lit(wi, wo, mz, c, sigma_i * wo.z * J);
 }
 
 ASP_FN asp_real aspi_mixed_density(asp_real ci, asp_real co, asp_real lobe, asp_real share)

@@ -44,9 +44,19 @@ asp_material asp_mirror(const asp_ndf *ndf, int mask)
     return start(&asp_bsdf_conductor, ndf, mask, ASPI_FRESNEL_ONE);
 }
 
+/* The Fresnel term of eta + i k. */
+static int conductor_term(asp_rgb eta, asp_rgb k)
+{
+    const double n[6] = { eta.r, eta.g, eta.b, k.r, k.g, k.b };
+    int i, within = 1;
+    for (i = 0; i < 6; i++)
+        within = within && n[i] >= 0.01 && n[i] <= 100.0;
+    return within ? ASPI_FRESNEL_METAL : ASPI_FRESNEL_CONDUCTOR;
+}
+
 asp_material asp_conductor(const asp_ndf *ndf, asp_rgb eta, asp_rgb k, int mask)
 {
-    asp_material mat = start(&asp_bsdf_conductor, ndf, mask, ASPI_FRESNEL_CONDUCTOR);
+    asp_material mat = start(&asp_bsdf_conductor, ndf, mask, conductor_term(eta, k));
     mat.c = eta;
     mat.d = k;
     return mat;
@@ -102,7 +112,7 @@ static asp_status parse_metal(aspi_spec *spec, asp_material *out, const asp_meta
     if (!metal)
         return aspi_spec_fail(spec, item->value, ASP_EUNKNOWN, item->value, item->value_size,
                               "no such metal (asperity list names them)", err);
-    out->fresnel = ASPI_FRESNEL_CONDUCTOR;
+    out->fresnel = conductor_term(metal->eta, metal->k);
     out->c = metal->eta;
     out->d = metal->k;
     *found = metal;
@@ -136,7 +146,7 @@ static asp_status parse_bare(aspi_spec *spec, double initial_eta, asp_material *
         out->c = f0;
         out->d = tint;
     } else if (has_k) {
-        out->fresnel = ASPI_FRESNEL_CONDUCTOR;
+        out->fresnel = conductor_term(eta, k);
         out->c = eta;
         out->d = k;
     } else if (has_eta && (eta.r != eta.g || eta.g != eta.b)) {
@@ -166,7 +176,8 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
         return s;
     if (!has_film)
         return aspi_spec_fail(spec, spec->text, ASP_EINVAL, "film", 4, "film_eta needs film, a thickness", err);
-    if (out->fresnel != ASPI_FRESNEL_CONDUCTOR && out->fresnel != ASPI_FRESNEL_DIELECTRIC)
+    if (out->fresnel != ASPI_FRESNEL_CONDUCTOR && out->fresnel != ASPI_FRESNEL_METAL
+        && out->fresnel != ASPI_FRESNEL_DIELECTRIC)
         return aspi_spec_fail(spec, spec->text, ASP_EINVAL, "film", 4,
                               "a film needs metal or eta beneath it", err);
     if (out->fresnel == ASPI_FRESNEL_DIELECTRIC)

@@ -29,6 +29,14 @@
 #define sample_pure ASP_NAME(sample_pure)
 #define sample_mixed ASP_NAME(sample_mixed)
 #define sample_own ASP_NAME(sample_own)
+#define sample_facets ASP_NAME(sample_facets)
+#define sample_value ASP_NAME(sample_value)
+#define reflected ASP_NAME(reflected)
+#ifdef __GNUC__
+#define ASPI_APART __attribute__((noinline))
+#else
+#define ASPI_APART
+#endif
 #define third_number ASP_NAME(third_number)
 #endif
 
@@ -36,7 +44,14 @@
 ASP_FN void value_of(const asp_mat *mat, asp_real c, asp_real x, asp_real y, asp_c3 *out)
 {
     asp_real F[3];
-    aspi_fresnel(mat, c, F);
+    if (!mat->model->ASPI_CALL(value)) {
+        aspi_fresnel(mat, c, x, F);
+        out->r = F[0];
+        out->g = F[1];
+        out->b = F[2];
+        return;
+    }
+    aspi_fresnel(mat, c, R(1.0), F);
     mat->model->ASPI_CALL(value)(mat, F[0], F[1], F[2], x, y, out);
 }
 
@@ -67,7 +82,7 @@ static asp_real share_of(const asp_mat *mat, asp_real ci)
     asp_real F[3];
     if (!mat->model->mixed)
         return R(1.0);
-    aspi_fresnel(mat, ci, F);
+    aspi_fresnel(mat, ci, R(1.0), F);
     return mat->model->ASPI_CALL(share)(mat, F);
 }
 
@@ -115,19 +130,42 @@ asp_real ASPI_CALL(asp_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 }
 
 /* Visible normals only: D cancels in the weight, which is F J sigma_i cos_o. */
-ASP_FN asp_sampled sample_pure(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
+ASP_FN asp_real reflected(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_mirrored *s)
+{
+    asp_v3 wo;
+    ASPI_OPS(&mat->ndf).reflect(&mat->ndf, wi.x, wi.y, wi.z, u1, u2, s);
+    wo = aspi_vector(s->wo_x, s->wo_y, s->wo_z);
+    return mat->mask == 0 /* as in facet_part */
+         ? aspi_facet_weight(&mat->ndf, wi, wo, s->m_z, s->cosine, s->sigma_i, s->sigma_o, 0)
+         : aspi_facet_weight(&mat->ndf, wi, wo, s->m_z, s->cosine, s->sigma_i, s->sigma_o, mat->mask);
+}
+
+ASP_CLONES_SINGLE static asp_sampled sample_pure(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
 {
     asp_sampled out;
     asp_mirrored s;
+    asp_real x = reflected(mat, wi, u1, u2, &s), F[3];
+    aspi_fresnel(mat, s.cosine, x, F);
+    out.wo.x = s.wo_x;
+    out.wo.y = s.wo_y;
+    out.wo.z = s.wo_z;
+    out.pdf = s.pdf;
+    out.weight.r = F[0];
+    out.weight.g = F[1];
+    out.weight.b = F[2];
+    return out;
+}
+
+/* The same with the model's formula. */
+static asp_sampled sample_value(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
+{
+    asp_sampled out;
+    asp_mirrored s;
+    asp_real x = reflected(mat, wi, u1, u2, &s);
     asp_c3 weight;
-    asp_v3 wo;
-    asp_real x;
-    ASPI_OPS(&mat->ndf).reflect(&mat->ndf, wi.x, wi.y, wi.z, u1, u2, &s);
-    wo = aspi_vector(s.wo_x, s.wo_y, s.wo_z);
-    x = aspi_above(wo.z) * facet_part(mat, wi, wo, s.m_z, s.cosine, s.sigma_i, s.sigma_o, s.sigma_i);
     value_of(mat, s.cosine, x, x, &weight);
-    out.wo = wo;
-    out.pdf = aspi_lobe_density(wi.z, s.density, s.sigma_i);
+    out.wo = aspi_vector(s.wo_x, s.wo_y, s.wo_z);
+    out.pdf = s.pdf;
     out.weight = weight;
     return out;
 }
@@ -162,23 +200,32 @@ ASP_FN asp_real third_number(asp_real u1, asp_real u2)
     return ASP_NAME(aspi_unit)(aspi_random_at(aspi_mix64(a), b));
 }
 
-asp_sampled ASPI_CALL(asp_sample)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
-{
-    return ASPI_CALL(asp_sample_lobe)(mat, wi, u1, u2, third_number(u1, u2));
-}
-
-static asp_sampled sample_own(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
+/* The compiler must not take these in: a copy of what was just written in parts would stall. */
+ASPI_APART static asp_sampled sample_own(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
 {
     asp_sampled out;
     mat->model->ASPI_CALL(sample)(mat, &wi, u1, u2, u3, &out);
     return out;
 }
 
-/* Returned from each: a copy of what was just written in parts would stall. */
+ASPI_APART static asp_sampled sample_facets(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
+{
+    if (mat->model->mixed)
+        return sample_mixed(mat, wi, u1, u2);
+    return sample_value(mat, wi, u1, u2);
+}
+
 asp_sampled ASPI_CALL(asp_sample_lobe)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
 {
     if (mat->model->ASPI_CALL(sample))
         return sample_own(mat, wi, u1, u2, u3);
-    return mat->model->mixed ? sample_mixed(mat, wi, u1, u2) : sample_pure(mat, wi, u1, u2);
+    return mat->model->ASPI_CALL(value) ? sample_facets(mat, wi, u1, u2) : sample_pure(mat, wi, u1, u2);
+}
+
+asp_sampled ASPI_CALL(asp_sample)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
+{
+    if (mat->model->ASPI_CALL(sample))
+        return sample_own(mat, wi, u1, u2, third_number(u1, u2));
+    return mat->model->ASPI_CALL(value) ? sample_facets(mat, wi, u1, u2) : sample_pure(mat, wi, u1, u2);
 }
 #endif

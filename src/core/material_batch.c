@@ -36,7 +36,9 @@
 #define loop_choose ASP_NAME(loop_choose)
 #define loop_mixed_direction ASP_NAME(loop_mixed_direction)
 #define loop_mixed_parts ASP_NAME(loop_mixed_parts)
-#define loop_unit ASP_NAME(loop_unit)
+#define block_value ASP_NAME(block_value)
+#define block_ones ASP_NAME(block_ones)
+#define loop_metal ASP_NAME(loop_metal)
 #define loop_one ASP_NAME(loop_one)
 #define loop_film ASP_NAME(loop_film)
 #define loop_conductor ASP_NAME(loop_conductor)
@@ -98,18 +100,16 @@ ASP_FN void loop_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, asp_
     }
 }
 
+/* The weight but for F. */
 ASP_FN void loop_weights(const asp_shape *k, size_t n, int mask, asp_cv3s wi, IN ox, IN oy, IN oz, IN mz,
-                         IN c, IN D, IN sigma_i, IN sigma_o, asp_real *pdf, OUT x)
+                         IN c, IN sigma_i, IN sigma_o, OUT x)
 {
     size_t i;
-    ASP_IN_PLACE
     for (i = 0; i < n; i++) {
         asp_v3 a, b;
         a = aspi_at(wi.x, wi.y, wi.z, i);
         b = aspi_at(ox, oy, oz, i);
-        x[i] = aspi_above(b.z)
-             * aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], sigma_i[i], mask);
-        pdf[i] = aspi_lobe_density(a.z, D[i], sigma_i[i]);
+        x[i] = aspi_facet_weight(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], mask);
     }
 }
 
@@ -176,89 +176,123 @@ ASP_FN void loop_mixed_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi
     }
 }
 
-ASP_FN void loop_conductor(size_t n, asp_real eta, asp_real kappa, IN c, OUT F)
+ASP_FN void loop_metal(size_t n, asp_c3 eta, asp_c3 kappa, IN c, IN by, OUT r, OUT g, OUT b)
 {
     size_t i;
-    for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_conductor_at(c[i], eta, kappa);
+    for (i = 0; i < n; i++) {
+        asp_real unit = aspi_unit_cosine(c[i]), F[3];
+        aspi_metal_ratios(aspi_conductor_ratio(unit, eta.r, kappa.r),
+                          aspi_conductor_ratio(unit, eta.g, kappa.g),
+                          aspi_conductor_ratio(unit, eta.b, kappa.b), by[i], F);
+        r[i] = F[0];
+        g[i] = F[1];
+        b[i] = F[2];
+    }
 }
 
-ASP_FN void loop_f82(size_t n, asp_real f0, asp_real tint, IN c, OUT F)
+ASP_FN void loop_conductor(size_t n, asp_real eta, asp_real kappa, IN c, IN by, OUT F)
 {
     size_t i;
     for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_f82(c[i], f0, tint);
+        F[i] = aspi_fresnel_conductor_at(aspi_unit_cosine(c[i]), eta, kappa) * by[i];
 }
 
-ASP_FN void loop_dielectric(size_t n, asp_real eta, IN c, OUT F)
+ASP_FN void loop_f82(size_t n, asp_real f0, asp_real tint, IN c, IN by, OUT F)
 {
     size_t i;
     for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_dielectric(c[i], eta);
+        F[i] = aspi_fresnel_f82(c[i], f0, tint) * by[i];
 }
 
-ASP_FN void loop_film(size_t n, IN table, IN c, OUT F)
+ASP_FN void loop_dielectric(size_t n, asp_real eta, IN c, IN by, OUT F)
 {
     size_t i;
     for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_film(table, c[i]);
+        F[i] = aspi_fresnel_dielectric(c[i], eta) * by[i];
 }
 
-ASP_FN void loop_unit(size_t n, IN cosine, OUT c)
+ASP_FN void loop_film(size_t n, IN table, IN c, IN by, OUT F)
 {
     size_t i;
     for (i = 0; i < n; i++)
-        c[i] = aspi_unit_cosine(cosine[i]);
+        F[i] = aspi_fresnel_film(table, c[i]) * by[i];
 }
 
-ASP_FN void loop_one(size_t n, IN c, OUT F)
+ASP_FN void loop_one(size_t n, IN c, IN by, OUT F)
 {
     size_t i;
     for (i = 0; i < n; i++)
-        F[i] = c[i] == c[i] ? R(1.0) : c[i];
+        F[i] = (c[i] == c[i] ? R(1.0) : c[i]) * by[i];
 }
 
 /* ---- blocks */
 
-ASP_FN void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c, asp_real *r, asp_real *g,
-                          asp_real *b)
+/* The Fresnel term times `by`. */
+ASP_FN void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c, const asp_real *by, asp_c3s F)
 {
-    asp_real unit[ASP_BLOCK];
     switch (mat->fresnel) {
+    case ASPI_FRESNEL_METAL:
+        loop_metal(n, mat->c, mat->d, c, by, F.r, F.g, F.b);
+        break;
     case ASPI_FRESNEL_CONDUCTOR:
-        loop_unit(n, c, unit);
-        loop_conductor(n, mat->c.r, mat->d.r, unit, r);
-        loop_conductor(n, mat->c.g, mat->d.g, unit, g);
-        loop_conductor(n, mat->c.b, mat->d.b, unit, b);
+        loop_conductor(n, mat->c.r, mat->d.r, c, by, F.r);
+        loop_conductor(n, mat->c.g, mat->d.g, c, by, F.g);
+        loop_conductor(n, mat->c.b, mat->d.b, c, by, F.b);
         break;
     case ASPI_FRESNEL_F82:
-        loop_f82(n, mat->c.r, mat->d.r, c, r);
-        loop_f82(n, mat->c.g, mat->d.g, c, g);
-        loop_f82(n, mat->c.b, mat->d.b, c, b);
+        loop_f82(n, mat->c.r, mat->d.r, c, by, F.r);
+        loop_f82(n, mat->c.g, mat->d.g, c, by, F.g);
+        loop_f82(n, mat->c.b, mat->d.b, c, by, F.b);
         break;
     case ASPI_FRESNEL_DIELECTRIC:
-        loop_dielectric(n, mat->c.r, c, r);
-        memcpy(g, r, n * sizeof *r);
-        memcpy(b, r, n * sizeof *r);
+        loop_dielectric(n, mat->c.r, c, by, F.r);
+        memcpy(F.g, F.r, n * sizeof *F.r);
+        memcpy(F.b, F.r, n * sizeof *F.r);
         break;
     case ASPI_FRESNEL_FILM:
-        loop_film(n, mat->energy + ENERGY_FILM, c, r);
-        loop_film(n, mat->energy + ENERGY_FILM + ENERGY_FILM_NODES, c, g);
-        loop_film(n, mat->energy + ENERGY_FILM + 2 * ENERGY_FILM_NODES, c, b);
+        loop_film(n, mat->energy + ENERGY_FILM, c, by, F.r);
+        loop_film(n, mat->energy + ENERGY_FILM + ENERGY_FILM_NODES, c, by, F.g);
+        loop_film(n, mat->energy + ENERGY_FILM + 2 * ENERGY_FILM_NODES, c, by, F.b);
         break;
     default:
-        loop_one(n, c, r);
-        memcpy(g, r, n * sizeof *r);
-        memcpy(b, r, n * sizeof *r);
+        loop_one(n, c, by, F.r);
+        memcpy(F.g, F.r, n * sizeof *F.r);
+        memcpy(F.b, F.r, n * sizeof *F.r);
     }
+}
+
+ASP_FN void block_ones(asp_real ones[ASP_BLOCK])
+{
+    size_t i;
+    for (i = 0; i < ASP_BLOCK; i++)
+        ones[i] = R(1.0);
+}
+
+/* The model's value from the Fresnel term at c. */
+ASP_FN void block_value(const asp_mat *mat, size_t n, const asp_real *c, const asp_real *x,
+                        const asp_real *y, asp_c3s out)
+{
+    asp_real ones[ASP_BLOCK];
+    if (!mat->model->ASPI_CALL(value)) {
+        block_fresnel(mat, n, c, x, out);
+        return;
+    }
+    block_ones(ones);
+    block_fresnel(mat, n, c, ones, out);
+    mat->model->ASPI_CALL(value_n)(mat, n, x, y, out.r, out.g, out.b);
 }
 
 ASP_FN void block_share(const asp_mat *mat, size_t n, const asp_real *ci, asp_real *share)
 {
-    asp_real F[3][ASP_BLOCK];
+    asp_real F[3][ASP_BLOCK], ones[ASP_BLOCK];
+    asp_c3s to;
     if (!n)
         return;
-    block_fresnel(mat, n, ci, F[0], F[1], F[2]);
+    to.r = F[0];
+    to.g = F[1];
+    to.b = F[2];
+    block_ones(ones);
+    block_fresnel(mat, n, ci, ones, to);
     mat->model->ASPI_CALL(share_n)(mat, n, F[0], F[1], F[2], share);
 }
 
@@ -270,11 +304,10 @@ ASP_CLONES static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp
     asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK];
     asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK], y[ASP_BLOCK];
     asp_real ones[ASP_BLOCK];
-    size_t i;
     if (!n)
         return;
-    for (i = 0; i < n && !cosine; i++)
-        ones[i] = R(1.0);
+    if (!cosine)
+        block_ones(ones);
     loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
     ASPI_OPS(k).density_n(k, n, mx, my, mz, D);
     ASPI_OPS(k).sigma_n(k, n, R(1.0), wi.x, wi.y, wi.z, si);
@@ -283,8 +316,7 @@ ASP_CLONES static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp
         loop_parts(k, n, 0, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
     else
         loop_parts(k, n, mat->mask, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
-    block_fresnel(mat, n, c, out.r, out.g, out.b);
-    mat->model->ASPI_CALL(value_n)(mat, n, x, y, out.r, out.g, out.b);
+    block_value(mat, n, c, x, y, out);
 }
 
 ASP_CLONES static void block_pdf(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
@@ -311,7 +343,7 @@ ASP_CLONES static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s 
                                          asp_real *pdf, asp_c3s F)
 {
     const asp_shape *k = &mat->ndf;
-    asp_real mz[ASP_BLOCK], c[ASP_BLOCK], D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK];
+    asp_real mz[ASP_BLOCK], c[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK];
     asp_mirrored_s to;
     if (!n)
         return;
@@ -320,16 +352,15 @@ ASP_CLONES static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s 
     to.wo_z = wo.z;
     to.m_z = mz;
     to.cosine = c;
-    to.density = D;
+    to.pdf = pdf;
     to.sigma_i = si;
     to.sigma_o = so;
     ASPI_OPS(k).reflect_n(k, n, wi.x, wi.y, wi.z, u1, u2, &to);
     if (mat->mask == 0) /* a constant here spares the default the other masks' arithmetic */
-        loop_weights(k, n, 0, wi, wo.x, wo.y, wo.z, mz, c, D, si, so, pdf, x);
+        loop_weights(k, n, 0, wi, wo.x, wo.y, wo.z, mz, c, si, so, x);
     else
-        loop_weights(k, n, mat->mask, wi, wo.x, wo.y, wo.z, mz, c, D, si, so, pdf, x);
-    block_fresnel(mat, n, c, F.r, F.g, F.b);
-    mat->model->ASPI_CALL(value_n)(mat, n, x, x, F.r, F.g, F.b);
+        loop_weights(k, n, mat->mask, wi, wo.x, wo.y, wo.z, mz, c, si, so, x);
+    block_value(mat, n, c, x, x, F);
 }
 
 ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s wi,
@@ -354,9 +385,8 @@ ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s
     loop_lobe_density(n, wi.z, D, si, p);
     loop_mixed_density(n, wi.z, wo.z, share, p);
     loop_mixed_parts(k, n, mat->mask, wi, wo.x, wo.y, wo.z, mz, c, D, si, so, p, x, y);
-    memcpy(pdf, p, n * sizeof *pdf); /* it may be where wi was */
-    block_fresnel(mat, n, c, F.r, F.g, F.b);
-    mat->model->ASPI_CALL(value_n)(mat, n, x, y, F.r, F.g, F.b);
+    memcpy(pdf, p, n * sizeof *pdf);
+    block_value(mat, n, c, x, y, F);
 }
 
 /* ---- batches */
@@ -397,8 +427,9 @@ void ASPI_CALL(asp_pdf_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo
 void ASPI_CALL(asp_sample_n)(const asp_mat *mat, size_t n, asp_cv3s wi, const asp_real *u1,
                              const asp_real *u2, asp_v3s wo, asp_real *pdf, asp_c3s weight)
 {
-    asp_real o[3][ASP_BLOCK];
-    int in_place = aspi_any_among(wo, wi.x, wi.y, wi.z) || aspi_any_among(wo, u1, u2, u2);
+    asp_real o[3][ASP_BLOCK], p[ASP_BLOCK];
+    int in_place = aspi_any_among(wo, wi.x, wi.y, wi.z) || aspi_any_among(wo, u1, u2, u2)
+                || aspi_among(pdf, wi) || pdf == u1 || pdf == u2;
     size_t i, size;
     if (mat->model->ASPI_CALL(sample)) {
         ASP_NAME(aspi_own_sample_n)(mat, n, wi, u1, u2, wo, pdf, weight);
@@ -406,14 +437,17 @@ void ASPI_CALL(asp_sample_n)(const asp_mat *mat, size_t n, asp_cv3s wi, const as
     }
     ASPI_FOR_BLOCKS(i, size, n) {
         asp_v3s to = in_place ? aspi_rows(o) : ASPI_TO(wo, i);
+        asp_real *density = in_place ? p : pdf + i;
         if (mat->model->mixed)
-            block_sample_mixed(mat, size, ASPI_FROM(wi, i), u1 + i, u2 + i, to, pdf + i,
+            block_sample_mixed(mat, size, ASPI_FROM(wi, i), u1 + i, u2 + i, to, density,
                                ASPI_TO_RGB(weight, i));
         else
-            block_sample_pure(mat, size, ASPI_FROM(wi, i), u1 + i, u2 + i, to, pdf + i,
+            block_sample_pure(mat, size, ASPI_FROM(wi, i), u1 + i, u2 + i, to, density,
                               ASPI_TO_RGB(weight, i));
-        if (in_place)
+        if (in_place) {
             aspi_put_rows(wo, i, size, o);
+            memcpy(pdf + i, p, size * sizeof *p);
+        }
     }
 }
 

@@ -202,7 +202,7 @@ ASP_FN void scatter(walker *r, asp_v3 m)
         r->d = r->inside ? negate(v) : v;
         return;
     }
-    aspi_fresnel(mat, c, F);
+    aspi_fresnel(mat, c, R(1.0), F);
     r->carried.r *= F[0];
     r->carried.g *= F[1];
     r->carried.b *= F[2];
@@ -260,7 +260,7 @@ ASP_FN asp_c3 facet_sends(const walker *r, asp_v3 v, asp_v3 w, int to_inside, as
         return out;
     }
     p = by_reflection(&mat->ndf, v, w, 0, seen, &c);
-    aspi_fresnel(mat, c, F);
+    aspi_fresnel(mat, c, R(1.0), F);
     out.r = F[0] * p;
     out.g = F[1] * p;
     out.b = F[2] * p;
@@ -317,7 +317,7 @@ ASP_FN void by_walls(const walker *r, asp_v3 v, asp_real seen, asp_v3 wo, asp_c3
     if (c <= R(0.0))
         return;
     if (mat->model->facets != ASPI_FACETS_REFRACT) {
-        aspi_fresnel(mat, c, F);
+        aspi_fresnel(mat, c, R(1.0), F);
         by.r = F[0];
         by.g = F[1];
         by.b = F[2];

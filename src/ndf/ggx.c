@@ -7,6 +7,8 @@
 
 #define ASP_NDF ggx
 #define ASP_NDF_SIGMA_UP
+#define ASP_NDF_DENSITY_OVER
+#define ASP_NDF_VISIBLE_STEPS
 #define ASP_PRECISION 64
 #include "ggx.c"
 #undef ASP_PRECISION
@@ -27,17 +29,24 @@ ASP_RECORD asp_model asp_model_ellipsoid = {
     ASP_KEYS_ELLIPSOID, 0.3, 0, 0, NULL, 0, NULL, ASP_NDF_OPS(ggx)
 };
 #undef ASP_NDF_SIGMA_UP
+#undef ASP_NDF_DENSITY_OVER
+#undef ASP_NDF_VISIBLE_STEPS
 #undef ASP_NDF
 
 #else
 #include "asperity/elementary.h"
 
 /* P22 = 1 / (pi (1 + r^2/z^2)^2). */
-ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
+ASP_FN asp_real ndf_density_over(const asp_shape *k, asp_real r2, asp_real z2)
 {
     asp_real h = r2 + z2;
     (void)k;
-    return R(1.0 / ASP_PI) / (h * h);
+    return R(ASP_PI) * (h * h);
+}
+
+ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
+{
+    return R(1.0) / ndf_density_over(k, r2, z2);
 }
 
 /* Half the hemisphere's area seen from above is its own disc, half the turned disc: (|v| + w)/2
@@ -57,23 +66,31 @@ ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
 
 /* The mirror image of v in the visible half of a sphere is uniform on the cap z > -v.z: the normal
  * is v plus a point of the cap. Written so that neither end cancels: with a = 1 + v.z the point's
- * height plus v.z is (1 - u1) a, and 1 minus its height is u1 a. */
-ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+ * height plus v.z is (1 - u1) a, and 1 minus its height is u1 a. First the horizontal part of v and a. */
+ASP_FN asp_v3 ndf_visible_begin(const asp_shape *k, asp_v3 v)
 {
     asp_real s2 = v.x * v.x + v.y * v.y;
     asp_real length = aspi_sqrt(s2 + v.z * v.z);
     asp_real up = length + aspi_abs(v.z);
     asp_real inverse = R(1.0) / (length * up);
     asp_real scale = up * inverse;
-    asp_real a = (v.z < R(0.0) ? s2 : up * up) * inverse;
-    asp_real d = u1 * a;
+    (void)k;
+    v.z = (v.z < R(0.0) ? s2 : up * up) * inverse;
+    v.x = v.x * scale;
+    v.y = v.y * scale;
+    return v;
+}
+
+ASP_FN asp_v3 ndf_visible_end(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+{
+    asp_real d = u1 * v.z;
     asp_real r = aspi_sqrt(d * aspi_max(R(2.0) - d, R(0.0)));
     asp_v2 t = aspi_sincos2pi(u2);
     asp_v3 m;
     (void)k;
-    m.x = r * t.x + v.x * scale;
-    m.y = r * t.y + v.y * scale;
-    m.z = (R(1.0) - u1) * a;
+    m.x = r * t.x + v.x;
+    m.y = r * t.y + v.y;
+    m.z = (R(1.0) - u1) * v.z;
     return m;
 }
 
