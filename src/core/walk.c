@@ -29,11 +29,18 @@
 #ifndef ASPI_WALK_NAMES
 #define ASPI_WALK_NAMES
 #define walker ASP_NAME(walker)
+#define way_out ASP_NAME(way_out)
+#define leave_by ASP_NAME(leave_by)
+#define other_side ASP_NAME(other_side)
+#define visible_normal ASP_NAME(visible_normal)
+#define density_of ASP_NAME(walk_density)
+#define draw_eval ASP_NAME(walk_draw_eval)
+#define draw_sample ASP_NAME(walk_draw_sample)
 #define uniform ASP_NAME(uniform)
 #define negate ASP_NAME(negate)
 #define walls_seen ASP_NAME(walls_seen)
 #define area ASP_NAME(area)
-#define power ASP_NAME(power)
+#define exponent ASP_NAME(exponent)
 #define facing ASP_NAME(facing)
 #define fly ASP_NAME(fly)
 #define fly_surely ASP_NAME(fly_surely)
@@ -58,16 +65,23 @@
 #define ASPI_WALK_LONGEST 100000
 #endif
 
-/* A ray: direction, side, q, colour carried, and the facing area at the last meeting. */
+/* A ray: direction, side, log q, colour carried. */
 typedef struct walker {
     const asp_mat *mat;
     asp_uniforms *next;
     void *state;
     asp_v3 d;
     int inside;
-    asp_real q;
+    asp_real l;
     asp_c3 carried;
 } walker;
+
+/* The direction that light is to leave by: its side, height there, and the area that stands in its way. */
+typedef struct way_out {
+    asp_v3 w;
+    int inside;
+    asp_real height, area;
+} way_out;
 
 ASP_FN asp_real uniform(const walker *r)
 {
@@ -94,17 +108,23 @@ ASP_FN asp_real walls_seen(const asp_shape *k, asp_v3 v)
 /* Facets and walls seen from v: at least v.z, which rounding must not undercut. */
 ASP_FN asp_real area(const asp_shape *k, asp_v3 v)
 {
-    asp_real a = ASPI_CALL(asp_sigma)(k, v) + walls_seen(k, v);
+    asp_real a = ASPI_OPS(k).sigma(k, v.x, v.y, v.z) + walls_seen(k, v);
     return aspi_max(a, v.z);
 }
 
-/* u^(over/under), 0 <= u <= 1; u^infinity is 0, for u = 1 too. */
-ASP_FN asp_real power(asp_real u, asp_real over, asp_real under)
+ASP_FN asp_real density_of(const asp_shape *k, asp_v3 m)
 {
-    if (!(under > R(0.0)) || u <= R(0.0))
-        return R(0.0);
-    return aspi_exp(aspi_log(u) * aspi_min(over / under, R(1e6)));
+    return ASPI_OPS(k).density(k, m.x, m.y, m.z);
 }
+
+/* over/under as an exponent. */
+ASP_FN asp_real exponent(asp_real over, asp_real under)
+{
+    return aspi_min(over / aspi_max(under, ASP_SMALLEST), R(1e6));
+}
+
+/* log(1 - q): what lies on the other side of the surface. Like every q it is at least 1e-30. */
+ASP_FN asp_real other_side(asp_real l) { return aspi_log(aspi_max(-aspi_expm1(l), R(1e-30))); }
 
 /* What facets in the way of the ray face. */
 ASP_FN asp_v3 facing(asp_v3 d, int inside) { return inside ? d : negate(d); }
@@ -112,16 +132,15 @@ ASP_FN asp_v3 facing(asp_v3 d, int inside) { return inside ? d : negate(d); }
 /* Flies to the next facet; 0 where there is none and the ray is out. */
 ASP_FN int fly(walker *r, asp_real seen)
 {
-    asp_real u = R(1.0) - uniform(r), height = aspi_abs(r->d.z);
+    asp_real p = aspi_log(R(1.0) - uniform(r)) * exponent(aspi_abs(r->d.z), seen);
     int deeper = r->inside ? r->d.z > R(0.0) : r->d.z < R(0.0);
-    asp_real p = power(u, height, seen);
     if (deeper) {
-        r->q = aspi_max(r->q * p, R(1e-30));
+        r->l = aspi_max(r->l + p, R(-69.0));
         return 1;
     }
-    if (r->q >= p)
+    if (r->l >= p)
         return 0;
-    r->q = r->q / p;
+    r->l = r->l - p;
     return 1;
 }
 
@@ -130,7 +149,7 @@ ASP_FN int fly(walker *r, asp_real seen)
  * estimates that use it have a finite variance. */
 ASP_FN asp_real fly_surely(walker *r, asp_real seen)
 {
-    asp_real height = aspi_abs(r->d.z), rate, meets, l;
+    asp_real rate, meets;
     int deeper = r->inside ? r->d.z > R(0.0) : r->d.z < R(0.0);
     if (deeper) {
         fly(r, seen);
@@ -138,20 +157,26 @@ ASP_FN asp_real fly_surely(walker *r, asp_real seen)
     }
     if (!(seen > ASP_SMALLEST))
         return R(0.0);
-    rate = aspi_min(seen / aspi_max(height, ASP_SMALLEST), R(1e6));
-    meets = -aspi_expm1(rate * aspi_log(r->q));
-    l = aspi_log1p(-meets * uniform(r));
-    r->q = aspi_min(r->q * aspi_exp(aspi_min(-l / rate, R(80.0))), R(1.0));
+    rate = exponent(seen, aspi_abs(r->d.z));
+    meets = -aspi_expm1(rate * r->l);
+    r->l = aspi_min(r->l - aspi_log1p(-meets * uniform(r)) / rate, R(0.0));
     return meets;
 }
 
-/* Probability that a ray from q along w, on the side it leaves by, meets nothing more. */
-ASP_FN asp_real leaves(const asp_shape *k, asp_v3 w, int inside, asp_real q)
+ASP_FN way_out leave_by(const asp_shape *k, asp_v3 w)
 {
-    asp_real height = inside ? -w.z : w.z;
-    if (height <= R(0.0))
-        return R(0.0);
-    return power(q, area(k, facing(w, inside)), height);
+    way_out out;
+    out.w = w;
+    out.inside = w.z < R(0.0);
+    out.height = aspi_abs(w.z);
+    out.area = area(k, facing(w, out.inside));
+    return out;
+}
+
+/* Probability that a ray from q on its side meets nothing more; wo.z is not 0. */
+ASP_FN asp_real leaves(const way_out *to, asp_real l)
+{
+    return aspi_exp(l * exponent(to->area, to->height));
 }
 
 ASP_FN asp_v3 wall_normal(const asp_shape *k)
@@ -163,16 +188,23 @@ ASP_FN asp_v3 wall_normal(const asp_shape *k)
     return aspi_normalize(m);
 }
 
-/* The facet that the ray meets, of those that face v; *wall says whether it is one of the walls. */
-ASP_FN asp_v3 next_normal(walker *r, asp_v3 v, asp_real seen, int *wall)
+ASP_FN asp_v3 visible_normal(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+{
+    asp_real m[3];
+    ASPI_OPS(k).visible(k, v.x, v.y, v.z, u1, u2, m);
+    return aspi_vector(m[0], m[1], m[2]);
+}
+
+/* The facet that the ray meets, of those that face v, by two numbers; one of the walls where the first is
+ * below their share. */
+ASP_FN asp_v3 next_normal(const walker *r, asp_v3 v, asp_real seen, asp_real u1, asp_real u2)
 {
     const asp_shape *k = &r->mat->ndf;
-    asp_real u = uniform(r), share = walls_seen(k, v) / seen;
-    *wall = u < share;
-    if (*wall)
+    asp_real share = walls_seen(k, v) / seen;
+    if (u1 < share)
         return wall_normal(k);
-    u = (u - share) / (R(1.0) - share);
-    return ASPI_CALL(asp_sample_visible)(k, v, aspi_min(u, R(1.0) - R(0x1p-24)), uniform(r));
+    u1 = (u1 - share) / (R(1.0) - share);
+    return visible_normal(k, v, aspi_min(u1, R(1.0) - R(0x1p-24)), u2);
 }
 
 /* Leaves the facet m; the side and what is carried change. */
@@ -195,7 +227,7 @@ ASP_FN void scatter(walker *r, asp_v3 m)
             asp_v3 t = aspi_refract(v, m, eta);
             r->d = r->inside ? negate(t) : t;
             r->inside = !r->inside;
-            r->q = R(1.0) - r->q;
+            r->l = other_side(r->l);
             return;
         }
         v = aspi_reflect(v, m);
@@ -213,7 +245,7 @@ ASP_FN void scatter(walker *r, asp_v3 m)
 ASP_FN asp_real facet_phase(const asp_shape *k, asp_v3 v, asp_v3 m, asp_real seen)
 {
     asp_real c = aspi_dot(v, m);
-    return c <= R(0.0) ? R(0.0) : c * ASPI_CALL(asp_D)(k, m) / seen;
+    return c <= R(0.0) ? R(0.0) : c * density_of(k, m) / seen;
 }
 
 /* Density of the direction w (of travel, on the same side) after one reflection by facets that face v,
@@ -223,7 +255,7 @@ ASP_FN asp_real by_reflection(const asp_shape *k, asp_v3 v, asp_v3 w, int inside
 {
     asp_v3 m = aspi_half_vector(v, facing(w, !inside));
     *c = aspi_dot(v, m);
-    return *c <= R(0.0) || m.z <= R(0.0) ? R(0.0) : R(0.25) * ASPI_CALL(asp_D)(k, m) / seen;
+    return *c <= R(0.0) || m.z <= R(0.0) ? R(0.0) : R(0.25) * density_of(k, m) / seen;
 }
 
 /* The same after refraction to the other side; eta as seen from v. From inside everything is turned
@@ -276,11 +308,10 @@ ASP_FN void add_scaled(asp_c3 *sum, asp_c3 a, asp_c3 b, asp_real by)
 
 /* What goes to wo by way of one wall, arriving there in direction d on side `inside` and changed by
  * `by` at the wall. */
-ASP_FN void by_wall(const walker *r, asp_v3 v, asp_real seen, asp_v3 d, int inside, asp_c3 by, asp_v3 wo,
-                    asp_c3 *sum)
+ASP_FN void by_wall(const walker *r, asp_v3 v, asp_real seen, asp_v3 d, int inside, asp_c3 by,
+                    const way_out *to, asp_c3 *sum)
 {
     const asp_shape *k = &r->mat->ndf;
-    int out = wo.z < R(0.0);
     asp_v3 f = facing(d, inside);
     asp_real all = area(k, f), share = walls_seen(k, f) / aspi_max(all, ASP_SMALLEST);
     walker side = *r;
@@ -290,12 +321,12 @@ ASP_FN void by_wall(const walker *r, asp_v3 v, asp_real seen, asp_v3 d, int insi
     sent = facet_sends(r, v, d, inside, seen);
     side.d = d;
     if (inside != r->inside)
-        side.q = R(1.0) - side.q;
+        side.l = other_side(side.l);
     side.inside = inside;
     share *= fly_surely(&side, all);
-    if (inside != out)
-        side.q = R(1.0) - side.q;
-    share *= leaves(k, wo, out, side.q);
+    if (inside != to->inside)
+        side.l = other_side(side.l);
+    share *= leaves(to, side.l);
     sent.r *= by.r;
     sent.g *= by.g;
     sent.b *= by.b;
@@ -303,15 +334,13 @@ ASP_FN void by_wall(const walker *r, asp_v3 v, asp_real seen, asp_v3 d, int insi
 }
 
 /* All ways to wo with one wall last: mirrored in it, and for dielectrics refracted by it. */
-ASP_FN void by_walls(const walker *r, asp_v3 v, asp_real seen, asp_v3 wo, asp_c3 *sum)
+static void by_walls(const walker *r, asp_v3 v, asp_real seen, const way_out *to, asp_c3 *sum)
 {
     const asp_mat *mat = r->mat;
-    asp_v3 n = wall_normal(&mat->ndf), toward;
-    int out = wo.z < R(0.0);
+    asp_v3 wo = to->w, n = wall_normal(&mat->ndf), toward;
+    int out = to->inside;
     asp_real c, F[3], eta, f;
     asp_c3 by;
-    if (mat->ndf.map.tx == R(0.0) && mat->ndf.map.ty == R(0.0))
-        return;
     n = facing(n, !out);                 /* towards the side of wo */
     c = aspi_dot(wo, n);
     if (c <= R(0.0))
@@ -321,53 +350,51 @@ ASP_FN void by_walls(const walker *r, asp_v3 v, asp_real seen, asp_v3 wo, asp_c3
         by.r = F[0];
         by.g = F[1];
         by.b = F[2];
-        by_wall(r, v, seen, negate(aspi_reflect(wo, n)), out, by, wo, sum);
+        by_wall(r, v, seen, negate(aspi_reflect(wo, n)), out, by, to, sum);
         return;
     }
     eta = out ? R(1.0) / mat->c.r : mat->c.r;
     f = aspi_fresnel_dielectric(c, eta);
     by.r = by.g = by.b = f;
-    by_wall(r, v, seen, negate(aspi_reflect(wo, n)), out, by, wo, sum);
+    by_wall(r, v, seen, negate(aspi_reflect(wo, n)), out, by, to, sum);
     if (f < R(1.0)) {
         asp_v3 t = aspi_refract(wo, n, eta);
         asp_real ct = aspi_abs(aspi_dot(t, n));
         toward = negate(t);
         /* solid angles before and after: Snell's law */
         by.r = by.g = by.b = (R(1.0) - f) * c / (eta * eta * aspi_max(ct, ASP_SMALLEST));
-        by_wall(r, v, seen, toward, !out, by, wo, sum);
+        by_wall(r, v, seen, toward, !out, by, to, sum);
     }
 }
 
 /* Adds what this meeting, whose probability is `meets`, sends to wo: by the facet m if it is diffuse, else by all that face v, and by
  * those and then a wall. `first`: nothing was met before, so that the way out is averaged
  * over heights: rate_i / (rate_i + rate_o) instead of q^rate_o. */
-ASP_FN void connect(const walker *r, asp_v3 v, asp_v3 m, asp_real seen, asp_v3 wo, int first,
+ASP_FN void connect(const walker *r, asp_v3 v, asp_v3 m, asp_real seen, const way_out *to, int first,
                     asp_real meets, asp_c3 *sum)
 {
     const asp_mat *mat = r->mat;
-    const asp_shape *k = &mat->ndf;
-    int out = wo.z < R(0.0);
     asp_real open;
-    walker now = *r;
-    if (out && mat->model->facets != ASPI_FACETS_REFRACT)
+    if (to->inside && mat->model->facets != ASPI_FACETS_REFRACT)
         return;
-    if (first && out == r->inside) {
-        asp_real height = aspi_abs(wo.z), over = area(k, facing(wo, out)) * aspi_abs(r->d.z);
-        open = seen * height / (seen * height + over);
-    } else {
-        open = leaves(k, wo, out, out == r->inside ? r->q : R(1.0) - r->q);
-    }
+    if (first && to->inside == r->inside)
+        open = seen * to->height / (seen * to->height + to->area * aspi_abs(r->d.z));
+    else
+        open = leaves(to, to->inside == r->inside ? r->l : other_side(r->l));
     open *= meets;
     if (mat->model->facets == ASPI_FACETS_DIFFUSE) {
         asp_c3 by = mat->a;
-        add_scaled(sum, r->carried, by, aspi_max(aspi_dot(m, wo), R(0.0)) * R(1.0 / ASP_PI) * open);
+        add_scaled(sum, r->carried, by, aspi_max(aspi_dot(m, to->w), R(0.0)) * R(1.0 / ASP_PI) * open);
         return;
     }
-    add_scaled(sum, r->carried, facet_sends(r, v, wo, out, seen), open);
-    now.carried.r *= meets;
-    now.carried.g *= meets;
-    now.carried.b *= meets;
-    by_walls(&now, v, seen, wo, sum);
+    add_scaled(sum, r->carried, facet_sends(r, v, to->w, to->inside, seen), open);
+    if (mat->ndf.map.tx != R(0.0) || mat->ndf.map.ty != R(0.0)) {
+        walker now = *r;
+        now.carried.r *= meets;
+        now.carried.g *= meets;
+        now.carried.b *= meets;
+        by_walls(&now, v, seen, to, sum);
+    }
 }
 
 /* Roulette: walks go on with the probability of what they carry, so that none is cut short. */
@@ -395,7 +422,7 @@ ASP_FN walker start_walk(const asp_mat *mat, asp_v3 wi, asp_uniforms *next, void
     r.state = state;
     r.d = negate(wi);
     r.inside = wi.z < R(0.0);
-    r.q = R(1.0);
+    r.l = R(0.0);
     r.carried.r = r.carried.g = r.carried.b = R(1.0);
     return r;
 }
@@ -419,34 +446,62 @@ ASP_FN int walkable(const asp_mat *mat, asp_v3 wi)
     return kind != ASPI_FACETS_NONE && (wi.z > R(0.0) || (wi.z < R(0.0) && kind == ASPI_FACETS_REFRACT));
 }
 
-asp_c3 ASPI_CALL(asp_walk_eval_cos)(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_uniforms *next,
-                                    void *state)
+/* The numbers of a meeting are drawn one after the other, whether they are needed or not; the facet is
+ * made of them when it is. */
+ASP_CLONES_SINGLE static void draw_eval(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_uniforms *next,
+                                        void *state, asp_c3 *sum)
 {
     walker r = start_walk(mat, wi, next, state);
-    asp_real nothing = (wi.x + wi.y + wi.z + wo.x + wo.y + wo.z) * R(0.0), by;
-    asp_c3 sum;
-    int met, wall;
-    sum.r = sum.g = sum.b = nothing;
-    if (!walkable(mat, wi) || nothing != R(0.0) || wo.z == R(0.0))
-        return sum;
+    way_out to = leave_by(&mat->ndf, wo);
+    int met, diffuse = mat->model->facets == ASPI_FACETS_DIFFUSE;
+    asp_real by;
     for (met = 0;; met++) {
-        asp_v3 v = facing(r.d, r.inside), m;
-        asp_real seen = area(&mat->ndf, v), meets = fly_surely(&r, seen);
+        asp_v3 v = facing(r.d, r.inside), m = v;
+        asp_real seen = area(&mat->ndf, v), meets = fly_surely(&r, seen), u1, u2;
         if (meets <= R(0.0))
             break;
-        m = next_normal(&r, v, seen, &wall);
-        connect(&r, v, m, seen, wo, met == 0, meets, &sum);
+        u1 = uniform(&r);
+        u2 = uniform(&r);
+        if (diffuse)
+            m = next_normal(&r, v, seen, u1, u2);
+        connect(&r, v, m, seen, &to, met == 0, meets, sum);
         if (uniform(&r) >= meets)
             break;
-        scatter(&r, m);
+        scatter(&r, diffuse ? m : next_normal(&r, v, seen, u1, u2));
         if (!survives(&r, met + 1))
             break;
     }
     by = crossing(mat, wi, wo);
-    sum.r *= by;
-    sum.g *= by;
-    sum.b *= by;
+    sum->r *= by;
+    sum->g *= by;
+    sum->b *= by;
+}
+
+asp_c3 ASPI_CALL(asp_walk_eval_cos)(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_uniforms *next,
+                                    void *state)
+{
+    asp_real nothing = (wi.x + wi.y + wi.z + wo.x + wo.y + wo.z) * R(0.0);
+    asp_c3 sum;
+    sum.r = sum.g = sum.b = nothing;
+    if (walkable(mat, wi) && nothing == R(0.0) && wo.z != R(0.0))
+        draw_eval(mat, wi, wo, next, state, &sum);
     return sum;
+}
+
+/* 1 where the walk came out. */
+ASP_CLONES_SINGLE static int draw_sample(walker *r)
+{
+    int met;
+    for (met = 0;; met++) {
+        asp_v3 v = facing(r->d, r->inside);
+        asp_real seen = area(&r->mat->ndf, v), u1;
+        if (met && !survives(r, met))
+            return 0;
+        if (!fly(r, seen))
+            return 1;
+        u1 = uniform(r);
+        scatter(r, next_normal(r, v, seen, u1, uniform(r)));
+    }
 }
 
 asp_sampled ASPI_CALL(asp_walk_sample)(const asp_mat *mat, asp_v3 wi, asp_uniforms *next, void *state)
@@ -454,20 +509,10 @@ asp_sampled ASPI_CALL(asp_walk_sample)(const asp_mat *mat, asp_v3 wi, asp_unifor
     walker r = start_walk(mat, wi, next, state);
     asp_real nothing = (wi.x + wi.y + wi.z) * R(0.0), by;
     asp_sampled out;
-    int met, wall, is_out = 0;
     out.wo = wi;
     out.pdf = out.weight.r = out.weight.g = out.weight.b = nothing;
-    if (!walkable(mat, wi) || nothing != R(0.0))
+    if (!walkable(mat, wi) || nothing != R(0.0) || !draw_sample(&r))
         return out;
-    for (met = 0; !is_out; met++) {
-        asp_v3 v = facing(r.d, r.inside);
-        asp_real seen = area(&mat->ndf, v);
-        if (met && !survives(&r, met))
-            return out;
-        is_out = !fly(&r, seen);
-        if (!is_out)
-            scatter(&r, next_normal(&r, v, seen, &wall));
-    }
     by = crossing(mat, wi, r.d);
     out.wo = r.d;
     out.pdf = ASPI_CALL(asp_walk_pdf)(mat, wi, r.d);
