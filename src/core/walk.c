@@ -29,6 +29,7 @@
 #ifndef ASPI_WALK_NAMES
 #define ASPI_WALK_NAMES
 #define walker ASP_NAME(walker)
+#define fresnel_of ASP_NAME(walk_fresnel)
 #define way_out ASP_NAME(way_out)
 #define leave_by ASP_NAME(leave_by)
 #define other_side ASP_NAME(other_side)
@@ -96,6 +97,12 @@ ASP_FN asp_v3 negate(asp_v3 a)
     a.y = -a.y;
     a.z = -a.z;
     return a;
+}
+
+/* Apart, where the compiler makes one vector of three channels. */
+ASP_CLONES_SINGLE static void fresnel_of(const asp_mat *mat, asp_real c, asp_real F[3])
+{
+    aspi_fresnel(mat, c, R(1.0), F);
 }
 
 /* Area of the walls seen from v. */
@@ -234,7 +241,7 @@ ASP_FN void scatter(walker *r, asp_v3 m)
         r->d = r->inside ? negate(v) : v;
         return;
     }
-    aspi_fresnel(mat, c, R(1.0), F);
+    fresnel_of(mat, c, F);
     r->carried.r *= F[0];
     r->carried.g *= F[1];
     r->carried.b *= F[2];
@@ -292,7 +299,7 @@ ASP_FN asp_c3 facet_sends(const walker *r, asp_v3 v, asp_v3 w, int to_inside, as
         return out;
     }
     p = by_reflection(&mat->ndf, v, w, 0, seen, &c);
-    aspi_fresnel(mat, c, R(1.0), F);
+    fresnel_of(mat, c, F);
     out.r = F[0] * p;
     out.g = F[1] * p;
     out.b = F[2] * p;
@@ -346,7 +353,7 @@ static void by_walls(const walker *r, asp_v3 v, asp_real seen, const way_out *to
     if (c <= R(0.0))
         return;
     if (mat->model->facets != ASPI_FACETS_REFRACT) {
-        aspi_fresnel(mat, c, R(1.0), F);
+        fresnel_of(mat, c, F);
         by.r = F[0];
         by.g = F[1];
         by.b = F[2];
