@@ -61,6 +61,11 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define beta ASP_NDF_NAME(_beta)
 #define joint_reflected ASP_NDF_NAME(_joint_reflected)
 #define facet_density ASP_NDF_NAME(_facet_density)
+#define density_of ASP_NDF_NAME(_density_of)
+#define sigma_of ASP_NDF_NAME(_sigma_of)
+#define index_of ASP_NDF_NAME(_index_of)
+#define bend ASP_NDF_NAME(_bend)
+#define sample_weight ASP_NDF_NAME(_sample_weight)
 #endif
 
 /* A pair of directions with wi above: which facet joins them, and F there. */
@@ -70,6 +75,14 @@ typedef struct case_of {
     asp_real sigma_i;
     int refracts, dark;
 } case_of;
+
+#define OPS ASP_NAME(OPS)
+#define OPS_64(k) ((k)->model->f64)
+#define OPS_32(k) ((k)->model->f32)
+
+ASP_FN asp_real density_of(const asp_shape *k, asp_v3 m) { return OPS(k).density(k, m.x, m.y, m.z); }
+
+ASP_FN asp_real sigma_of(const asp_shape *k, asp_v3 w) { return OPS(k).sigma(k, w.x, w.y, w.z); }
 
 /* As seen from the side of `sign`: by a point reflection, or for a sheet by a mirror. */
 ASP_FN asp_v3 turned(asp_v3 w, asp_real sign, int thin)
@@ -103,14 +116,16 @@ ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
         k.F = R(2.0) * k.F / (R(1.0) + k.F);
     k.dark = !(k.c > R(0.0) && k.m.z > ASP_FLAT && k.wi.z > R(0.0) && k.wo.z != R(0.0))
           || mat->c.r == R(1.0);
-    k.sigma_i = ASPI_CALL(asp_sigma)(&mat->ndf, k.wi);
+    k.sigma_i = sigma_of(&mat->ndf, k.wi);
     return k;
 }
 
-/* Stirling's series, the logarithm of Gamma(z) over sqrt(2 pi/z) (z/e)^z. */
-ASP_FN asp_real stirling(asp_real z)
+/* Stirling's series, the logarithm of Gamma(z) over sqrt(2 pi/z) (z/e)^z, from 1/z; z is at least 3 in
+ * float32, 9 in float64. */
+#define BETA_STEPS (ASP_PRECISION == 64 ? 8 : 2)
+ASP_FN asp_real stirling(asp_real i)
 {
-    asp_real i = R(1.0) / z, i2 = i * i, s = R(-1.0 / 1680.0);
+    asp_real i2 = i * i, s = R(-1.0 / 1680.0);
 #if ASP_PRECISION == 64
     s = R(1.0 / 1188.0) + i2 * (R(-691.0 / 360360.0) + i2 * R(1.0 / 156.0));
     s = R(-1.0 / 1680.0) + i2 * s;
@@ -120,38 +135,44 @@ ASP_FN asp_real stirling(asp_real z)
     return i * (R(1.0 / 12.0) + i2 * s);
 }
 
-/* Euler's B(a, b), a and b at least 1: brought to a + n, b + n by the recurrence. The products are
- * float64's, which do not overflow. Relative error 1e-11 and 4e-7 per 1 + |ln B|; float32 answers 0 below
- * about 1e-20. */
-static asp_real beta(asp_real a, asp_real b)
+/* Euler's B(a, b), a and b at least 1: brought to a + n, b + n by the recurrence. With x = B/A the power is
+ * exp(-((A + B) log(1 + x) - B log x)), whose error by that of x vanishes. Relative error 1e-11 and 5e-7 per
+ * 1 + |ln B|; float32 answers 0 below about 1e-20. */
+ASP_FN asp_real beta(asp_real a, asp_real b)
 {
-    enum { STEPS = ASP_PRECISION == 64 ? 8 : 3 };
-    double over = 1.0, under = 1.0;
-    asp_real A = a + R(STEPS), B = b + R(STEPS), S = A + B, e;
+    int low = a + b < R(1e6);
+    asp_real over = R(1.0), under = R(1.0), A, B, S, one, x, e;
     int i;
-    if (!(a + b < R(1e6)))
-        return R(0.0);
-    for (i = 0; i < STEPS; i++) {
-        double s = (double)a + (double)b + 2 * i;
-        over = over * (s * (s + 1.0));
-        under = under * (((double)a + i) * ((double)b + i));
+    a = low ? a : R(1.0);
+    b = low ? b : R(1.0);
+    A = a + R(BETA_STEPS);
+    B = b + R(BETA_STEPS);
+    S = A + B;
+    for (i = 0; i < BETA_STEPS; i++) {
+        asp_real s = (a + b) + R(2 * i);
+        over = over * (s * (s + R(1.0)));
+        under = under * ((a + R(i)) * (b + R(i)));
     }
-    e = (stirling(A) + stirling(B) - stirling(S)) - (A * aspi_log1p(B / A) + B * aspi_log1p(A / B));
-    return R(over / under) * aspi_sqrt(R(2.0 * ASP_PI) * S / (A * B)) * aspi_exp(e);
+    one = R(1.0) / (A * B * S);
+    x = B * (B * S * one);
+    e = (stirling(B * S * one) + stirling(A * S * one) - stirling(A * B * one))
+      - (S * aspi_log1p(x) - B * aspi_log(x));
+    x = over / under * aspi_sqrt(R(2.0 * ASP_PI) * (S * S * one)) * aspi_exp(e);
+    return low ? x : R(0.0);
 }
 
 /* G2 of light that crosses: the one direction sees from above, the other from below, so that heights
  * are opposed. Heitz 2014, sec. 5.4 (after Dupuy): B(1 + Lambda_i, 1 + Lambda_o). V-cavities: what both
  * sides leave of a groove, G1 + G1 - 1. */
-ASP_FN asp_real refracted_masking(const asp_mat *mat, const case_of *k, asp_real sigma_o)
+ASP_FN asp_real refracted_masking(const asp_shape *shape, const case_of *k, asp_real sigma_o, int mask)
 {
     asp_real ci = k->wi.z, co = aspi_abs(k->wo.z);
     asp_v3 below = turned(k->wo, R(-1.0), 0);
-    asp_real a = aspi_masked(&mat->ndf, k->wi, k->sigma_i, mat->mask) / ci;
-    asp_real b = aspi_masked(&mat->ndf, below, sigma_o, mat->mask) / co;
-    if ((mat->mask & 15) == ASP_MASK_UNCORRELATED)
+    asp_real a = aspi_masked(shape, k->wi, k->sigma_i, mask) / ci;
+    asp_real b = aspi_masked(shape, below, sigma_o, mask) / co;
+    if ((mask & 15) == ASP_MASK_UNCORRELATED)
         return R(1.0) / (a * b);
-    if ((mat->mask & 15) == ASP_MASK_V_CAVITY) {
+    if ((mask & 15) == ASP_MASK_V_CAVITY) {
         asp_real open_i = aspi_min(R(1.0), R(2.0) * k->m.z * ci / k->c);
         asp_real open_o = aspi_min(R(1.0), R(2.0) * k->m.z * co / aspi_max(-k->wm, ASP_SMALLEST));
         return aspi_max(open_i + open_o - R(1.0), R(0.0));
@@ -160,11 +181,9 @@ ASP_FN asp_real refracted_masking(const asp_mat *mat, const case_of *k, asp_real
 }
 
 /* G2 / (ci co) of a reflection. */
-ASP_FN asp_real joint_reflected(const asp_mat *mat, const case_of *k, asp_real sigma_o)
+ASP_FN asp_real joint_reflected(const asp_shape *shape, const case_of *k, asp_real sigma_o, int mask)
 {
-    asp_real si = aspi_masked(&mat->ndf, k->wi, k->sigma_i, mat->mask);
-    asp_real so = aspi_masked(&mat->ndf, k->wo, sigma_o, mat->mask);
-    return aspi_joint(k->wi.z, k->wo.z, si, so, k->m.z, k->c, k->c, mat->mask);
+    return aspi_reflected_joint(shape, k->wi, k->wo, k->m.z, k->c, k->sigma_i, sigma_o, mask);
 }
 
 ASP_FN asp_real crossing_scale(const asp_mat *mat, const case_of *k)
@@ -180,15 +199,15 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
     asp_real nothing = k.c * R(0.0), f = nothing, D, co = aspi_abs(wo->z);
     if (!k.dark) {
         int thin = mat->a.r > R(0.0);
-        D = ASPI_CALL(asp_D)(&mat->ndf, k.m);
+        D = density_of(&mat->ndf, k.m);
         if (!k.refracts || thin) {
-            asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, k.wo);
+            asp_real so = sigma_of(&mat->ndf, k.wo);
             asp_real share = k.refracts ? R(1.0) - k.F : k.F;
-            f = share * aspi_finite(R(0.25) * D * joint_reflected(mat, &k, so));
+            f = share * aspi_finite(R(0.25) * D * joint_reflected(&mat->ndf, &k, so, mat->mask));
             f = cosine ? f * co : f;
         } else if (k.wm < R(0.0)) {
-            asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, turned(k.wo, R(-1.0), 0));
-            asp_real G2 = refracted_masking(mat, &k, so);
+            asp_real so = sigma_of(&mat->ndf, turned(k.wo, R(-1.0), 0));
+            asp_real G2 = refracted_masking(&mat->ndf, &k, so, mat->mask);
             f = (R(1.0) - k.F) * aspi_finite(k.c * D * aspi_bent_density(k.c, k.wm, k.eta) * G2 / k.wi.z)
               * crossing_scale(mat, &k);
             f = cosine ? f : f / co;
@@ -198,9 +217,9 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
 }
 
 /* Density of wo by the facet of a case that is not dark. */
-ASP_FN asp_real facet_density(const asp_mat *mat, const case_of *k, int thin)
+ASP_FN asp_real facet_density(const case_of *k, asp_real D, int thin)
 {
-    asp_real p = ASPI_CALL(asp_D)(&mat->ndf, k->m) / aspi_max(k->sigma_i, ASP_SMALLEST);
+    asp_real p = D / aspi_max(k->sigma_i, ASP_SMALLEST);
     if (!k->refracts || thin)
         p = (k->refracts ? R(1.0) - k->F : k->F) * R(0.25) * p;
     else
@@ -214,17 +233,57 @@ static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
     int thin = mat->a.r > R(0.0);
     if (k.dark || (k.refracts && !thin && k.wm >= R(0.0)))
         return k.c * R(0.0);
-    return facet_density(mat, &k, thin);
+    return facet_density(&k, density_of(&mat->ndf, k.m), thin);
 }
 
-/* A visible normal, then reflection or refraction by F: F cancels in the weight. */
-static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2, asp_real u3,
-                        asp_sampled *out)
+/* The index of the other side over that of the side of `sign`. */
+ASP_FN asp_real index_of(asp_real sign, asp_real eta, asp_real inverse, int thin)
 {
-    int thin = mat->a.r > R(0.0), refracts;
-    asp_real sign = wi->z < R(0.0) ? R(-1.0) : R(1.0), c, F, eta;
-    asp_real nothing = (wi->x + wi->y + wi->z) * R(0.0), weight = nothing;
-    asp_v3 v = turned(*wi, sign, thin), m, wo;
+    return sign < R(0.0) && !thin ? inverse : eta;
+}
+
+/* Reflection or refraction at the facet m by F; wo.z is of the side that it should be on unless single
+ * scattering loses this light. */
+ASP_FN case_of bend(asp_v3 v, asp_v3 m, asp_real eta, asp_real u3, int thin)
+{
+    case_of k;
+    k.wi = v;
+    k.m = m;
+    k.eta = eta;
+    k.c = aspi_dot(v, m);
+    k.F = aspi_fresnel_dielectric(k.c, eta);
+    if (thin)
+        k.F = R(2.0) * k.F / (R(1.0) + k.F);
+    k.refracts = u3 >= k.F;
+    if (k.refracts && !thin)
+        k.wo = aspi_refract(v, m, eta);
+    else
+        k.wo = aspi_reflect(v, m);
+    k.wm = aspi_dot(k.wo, m);
+    return k;
+}
+
+/* f cos / pdf, where F cancels; k.wo.z of a sheet is above. */
+ASP_FN asp_real sample_weight(const asp_shape *shape, const case_of *k, asp_real sigma_o, asp_real scale, int thin,
+                              int mask)
+{
+    asp_real w;
+    if (!k->refracts || thin)
+        w = k->sigma_i * aspi_abs(k->wo.z) * joint_reflected(shape, k, sigma_o, mask);
+    else
+        w = refracted_masking(shape, k, sigma_o, mask) * k->sigma_i / k->wi.z * scale;
+    return w;
+}
+
+/* A visible normal, then reflection or refraction by F. */
+ASP_CLONES_SINGLE static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2,
+                                          asp_real u3, asp_sampled *out)
+{
+    const asp_shape *shape = &mat->ndf;
+    int thin = mat->a.r > R(0.0);
+    asp_real sign = wi->z < R(0.0) ? R(-1.0) : R(1.0), weight, normal[3];
+    asp_real nothing = (wi->x + wi->y + wi->z) * R(0.0);
+    asp_v3 v = turned(*wi, sign, thin), wo, seen;
     case_of k;
     out->pdf = nothing;
     out->wo = turned(*wi, R(-1.0), 0);
@@ -236,39 +295,30 @@ static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_r
     }
     if (v.z <= R(0.0) || nothing != R(0.0))
         return;
-    m = ASPI_CALL(asp_sample_visible)(&mat->ndf, v, u1, u2);
-    c = aspi_dot(v, m);
-    eta = sign < R(0.0) && !thin ? R(1.0) / mat->c.r : mat->c.r;
-    F = aspi_fresnel_dielectric(c, eta);
-    F = thin ? R(2.0) * F / (R(1.0) + F) : F;
-    refracts = u3 >= F;
-    wo = refracts && !thin ? aspi_refract(v, m, eta) : aspi_reflect(v, m);
-    if (refracts && thin)
+    OPS(shape).visible(shape, v.x, v.y, v.z, u1, u2, normal);
+    k = bend(v, aspi_vector(normal[0], normal[1], normal[2]),
+             index_of(sign, mat->c.r, R(1.0) / mat->c.r, thin), u3, thin);
+    wo = k.wo;
+    if (k.refracts && thin)
         wo.z = -wo.z;
     out->wo = turned(wo, sign, thin);
-    if (refracts ? wo.z >= R(0.0) : wo.z <= R(0.0))
+    if (k.refracts ? wo.z >= R(0.0) : wo.z <= R(0.0))
         return; /* into the surface again: single scattering loses this light */
-    k.wi = v;
-    k.wo = wo;
-    k.m = m;
-    k.eta = eta;
-    k.c = c;
-    k.F = F;
-    k.wm = aspi_dot(wo, m);
-    k.sigma_i = ASPI_CALL(asp_sigma)(&mat->ndf, v);
-    k.refracts = refracts;
+    k.sigma_i = sigma_of(shape, v);
     if (thin)
         k.wo.z = aspi_abs(wo.z); /* as make_case does */
-    out->pdf = facet_density(mat, &k, thin);
+    out->pdf = facet_density(&k, density_of(shape, k.m), thin);
     if (out->pdf <= R(0.0))
         return;
-    if (!refracts || thin) {
-        asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, k.wo);
-        weight = k.sigma_i * aspi_abs(k.wo.z) * joint_reflected(mat, &k, so);
-    } else {
-        asp_real so = ASPI_CALL(asp_sigma)(&mat->ndf, turned(k.wo, R(-1.0), 0));
-        weight = refracted_masking(mat, &k, so) * k.sigma_i / k.wi.z * crossing_scale(mat, &k);
-    }
+    seen = turned(k.wo, k.refracts && !thin ? R(-1.0) : R(1.0), 0);
+    weight = sigma_of(shape, seen);
+    weight = mat->mask == 0 /* a constant spares the default the others' arithmetic */
+           ? sample_weight(shape, &k, weight, crossing_scale(mat, &k), thin, 0)
+           : sample_weight(shape, &k, weight, crossing_scale(mat, &k), thin, mat->mask);
     out->weight.r = out->weight.g = out->weight.b = weight;
 }
+#undef OPS
+#undef OPS_64
+#undef OPS_32
+#undef BETA_STEPS
 #endif
