@@ -218,6 +218,12 @@ ASP_CLONES static void ndf_normal_n(const asp_shape *k, size_t n, const asp_real
     }
 }
 
+#ifdef ASP_OWN_VISIBLE_N
+#define NDF_LOBE(i) aspi_lobe_density(wz[i], p[i], si[i])
+#else
+#define NDF_LOBE(i) ndf_lobe(k, wz[i], aspi_vector(x[i], y[i], z[i]), si[i])
+#endif
+
 /* The sign bits tell whether any direction that matters lies below the mean plane: a wo that points down
  * carries no weight. */
 ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT wx,
@@ -229,11 +235,11 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
     asp_real *ASP_RESTRICT ox = out->wo_x, *ASP_RESTRICT oy = out->wo_y, *ASP_RESTRICT oz = out->wo_z;
     asp_real *ASP_RESTRICT mz = out->m_z, *ASP_RESTRICT c = out->cosine, *ASP_RESTRICT p = out->pdf;
     asp_real *ASP_RESTRICT si = out->sigma_i, *ASP_RESTRICT so = out->sigma_o;
-    asp_real bx[ASP_BLOCK], by[ASP_BLOCK], x[ASP_BLOCK], y[ASP_BLOCK], z[ASP_BLOCK];
-    asp_real *m_x = x, *m_y = y, *m_z = z;
+    asp_real bx[ASP_BLOCK], by[ASP_BLOCK];
     asp_bits below = 0;
     size_t i;
 #ifndef ASP_OWN_VISIBLE_N
+    asp_real x[ASP_BLOCK], y[ASP_BLOCK], z[ASP_BLOCK];
     for (i = 0; i < n; i++) {
         asp_v3 v = aspi_view(k, aspi_vector(wx[i], wy[i], wz[i]));
         asp_v3 m = ndf_visible_begin(k, v);
@@ -265,15 +271,13 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
     }
 #endif
 #ifdef ASP_OWN_VISIBLE_N
-    m_x = bx;
-    m_y = by;
-    m_z = mz;
     ndf_visible_n(k, n, wx, wy, wz, u1, u2, bx, by, mz);
     ndf_sigma_n(k, n, R(1.0), wx, wy, wz, si);
+    ndf_density_n(k, n, bx, by, mz, p);
 #endif
     ASP_IN_PLACE
     for (i = 0; i < n; i++)
-        p[i] = ndf_lobe(k, wz[i], aspi_vector(m_x[i], m_y[i], m_z[i]), si[i]);
+        p[i] = NDF_LOBE(i);
     below = 0;
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
@@ -300,5 +304,6 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
 #undef NDF_ANY_BELOW
 #undef ASP_OWN_DENSITY_N
 #undef NDF_NOTE
+#undef NDF_LOBE
 #undef ASP_OWN_SIGMA_N
 #undef ASP_OWN_VISIBLE_N
