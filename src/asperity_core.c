@@ -84,6 +84,8 @@
 #undef ASP_PRECISION
 #include "ndf/prepared_area.c"
 #undef ASP_PRECISION
+#include "ndf/prepared_rows.c"
+#undef ASP_PRECISION
 #include "ndf/prepared_views.c"
 #undef ASP_PRECISION
 #include "ndf/sgd.c"

@@ -67,8 +67,6 @@ static double gtr_log_density(const asp_ndf *k, double r2)
     return -gtr_exponent_64(k, r2, 1) - 2 * aspi_log1p_64(r2);
 }
 
-/* Not in the table: its visible normals and sigma far below hold for gamma up to 5 (sigma: 1e-6 from above, 2.4e-5
- * where a view from below sees 1e-24); beyond, the plateau of D beside the peak is too deep for the tables. */
 ASP_RECORD asp_model asp_model_gtr = {
     "gtr", NULL, "Generalised Trowbridge-Reitz (GTR)",
     "Burley 2012; Ribardiere et al. 2017, eq. 8",
@@ -93,8 +91,8 @@ ASP_FN asp_real exponent(const asp_shape *k, asp_real r2, asp_real z2)
 
 ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
 {
-    asp_real h = r2 + z2;
-    return k->table[GTR_MAX] * aspi_exp(-exponent(k, r2, z2)) / (h * h);
+    asp_real h = r2 + z2, d = aspi_exp(R(-0.5) * exponent(k, r2, z2));
+    return d * k->table[GTR_MAX] * d / (h * h);       /* its square alone may underflow where D does not */
 }
 #undef exponent
 

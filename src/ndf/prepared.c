@@ -12,9 +12,16 @@ double aspi_prepared_log(const prepared_source *s, double r2)
     return s->f(s->k, r2) - s->log_mass;
 }
 
+/* That there, or of the largest ring, if it is farther out: it may be a ring with hardly a slope within. */
+double aspi_prepared_base(const prepared_source *s, double radius)
+{
+    double here = aspi_prepared_log(s, radius * radius), ring = aspi_exp_64(s->at);
+    return radius < ring ? aspi_max_64(here, aspi_prepared_log(s, ring * ring)) : here;
+}
+
 /* ------------------------------------------------------------------ splines */
 
-#define PREPARED_MOST 196
+#define PREPARED_MOST 70
 
 void aspi_prepared_spline(int n, double h, const double *value, int step, double d0, double d1,
                           double *out, int out_step)
@@ -75,7 +82,7 @@ void aspi_prepared_integrate(prepared_integrand *g, const void *context, double 
         for (;;) {
             next = g(context, t + h);
             ratio = next / value;
-            if (ratio > 0.15 || h < 1e-3 || !(value > 0))
+            if ((ratio > 0.15 && (ratio < 60 || value < 1e-12 * next)) || h < 1e-3 || !(value > 0))
                 break;
             h *= 0.5;
         }
@@ -108,7 +115,7 @@ void aspi_prepared_integrate(prepared_integrand *g, const void *context, double 
 }
 
 /* -log of a share beyond, from the mass below or beyond. */
-static double prepared_rho(const prepared_panels *p, double below, double beyond)
+static double prepared_share_rho(const prepared_panels *p, double below, double beyond)
 {
     double total = p->below[0] + p->beyond[0];
     return below < 0.5 * total ? -aspi_log1p_64(-below / total) : -aspi_log_64(beyond / total);
@@ -116,7 +123,7 @@ static double prepared_rho(const prepared_panels *p, double below, double beyond
 
 static double prepared_edge_rho(const prepared_panels *p, int i)
 {
-    return prepared_rho(p, p->below[i], p->beyond[i]);
+    return prepared_share_rho(p, p->below[i], p->beyond[i]);
 }
 
 /* Hermite's cubic over log rho, whose slope is known (d rho/dt = value/beyond), then a step of Newton's with
@@ -140,7 +147,7 @@ double aspi_prepared_radius(const prepared_panels *p, prepared_integrand *g, con
     b = d - h * r1 * p->beyond[i + 1] / p->value[i + 1];
     t = p->edge[i] + x * d + x * (1 - x) * (a * (1 - x) + b * x);
     mass = prepared_panel(g, context, p->edge[i], t - p->edge[i]);
-    r1 = prepared_rho(p, p->below[i] + mass, p->beyond[i] - mass);
+    r1 = prepared_share_rho(p, p->below[i] + mass, p->beyond[i] - mass);
     return t + aspi_log_64(rho / r1) * r1 * (p->beyond[i] - mass) / g(context, t);
 }
 
@@ -177,23 +184,24 @@ asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
 {
     prepared_source s;
     prepared_panels rings;
-    double at = 0, t0;
+    double mu[PREPARED_VIEW_CELLS + 1], t0;
     s.k = out;
     s.f = f;
-    s.log_mass = 0;
-    s.log_mass = prepared_scan(&s, &at);
+    s.at = s.log_mass = 0;
+    s.log_mass = prepared_scan(&s, &s.at);
     if (!(s.log_mass > -1e300))
         return asp_fail(err, ASP_EINVAL, "density", "it is not positive anywhere");
-    s.low = at - 20;
-    s.high = aspi_max_64(at, 0) + 8;
+    s.low = s.at - 20;
+    s.high = aspi_max_64(s.at, 0) + 8;
     aspi_prepared_rings(&s, &rings);
     s.log_mass += aspi_log_64(rings.below[0] + rings.beyond[0]);
     out->table[PREPARED_LOG_MASS] = s.log_mass;
     t0 = 2 * aspi_prepared_edge_on(&s);
     out->table[PREPARED_SCALE] = t0;
     out->table[PREPARED_SCALE2] = t0 * t0;
-    aspi_prepared_normal_table(&s, out->table + PREPARED_NORMAL);
+    aspi_prepared_normal_table(&s, out->table);
     aspi_prepared_area_tables(&s, t0, out->table);
-    aspi_prepared_tail_table(&s, t0, &out->table[PREPARED_EDGE], out->table + PREPARED_TAIL);
+    aspi_prepared_views(&s, t0, out->table, mu);
+    aspi_prepared_tail_table(&s, t0, mu, out->table);
     return ASP_OK;
 }

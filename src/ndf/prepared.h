@@ -51,31 +51,36 @@ asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
  *               mean plane keeps its relative accuracy. While P22 is the power -2n this is about n/(1 + q): J/P22 falls like
  *               n^(-5/2)
  *               If bent, log(J/T0) instead, in the last piece less PREPARED_FALL log(y/PREPARED_DEEP_LAST)
- *     BELOW     for TAIL, log of J/(P22(mu) (mu^2 + T0^2)^(3/2)) over q^(1/4)/(1 + q^(1/4))
- *     NORMAL    log(r/sqrt e) over z = e^(1/4), e = -log Q(r), Q(r) the share of slopes beyond r
- *     TAIL      what a view below the mean plane sees are slopes of radius sqrt(mu^2 + eta^2): over v and
- *               rho^(1/5), rho = -log of the share with larger eta, log(eta/sqrt(mu^2 + T0^2)) - p log rho - a BELOW
- *               with p = PREPARED_POWER: while P22 is constant eta starts like rho^(1/5), or rho^(1/3) for
- *               mu = 0; a = PREPARED_STEEP: far below the plane eta^5 = 7.5 rho mu^2 J/P22(mu) at first, so
- *               that what is left varies little however steep the tail */
+ *     NORMAL    log r over z, z of t = log(share within r/share beyond r) of all slopes
+ *     VIEWS     x over y = log(1 + mu/c): where among the rows of TAIL a view of slope mu stands. Rows are close
+ *               where what is seen changes its shape, as on the way from a peak to a plateau
+ *     TAIL      what a view below the mean plane sees are slopes of radius sqrt(mu^2 + eta^2): over x and z,
+ *               z of t = log(share within eta/share beyond eta) of what is seen,
+ *               log(eta/sqrt(mu^2 + T0^2))
+ *
+ * In t everything starts and ends as a straight line: r like e^(t/2) and eta like e^(t/5) (e^(t/3) for mu = 0)
+ * while P22 is constant, and as powers of e^t where P22 is a power. z = t/sqrt(1 + (t/a)^2) only makes the cells longer
+ * where fewer samples fall; a = PREPARED_WITHIN for t < 0, PREPARED_BEYOND above. Before the first
+ * cell and beyond the last one it goes on straight, for TAIL as it does edge-on. */
 #define PREPARED_PIECES 256             /* numbers of a table by pieces */
 #define PREPARED_AREA_OCTAVE (-8)       /* where their first octave begins */
 #define PREPARED_DEEP_OCTAVE (-1)
 #define PREPARED_DEEP_LAST (1.0 / (1 + 24576.0))      /* y where the last piece of DEEP begins */
-#define PREPARED_BELOW_CELLS 180
-#define PREPARED_NORMAL_CELLS 40
-#define PREPARED_VIEW_CELLS 19
-#define PREPARED_TAIL_CELLS 25
-#define PREPARED_TAIL_ROW (PREPARED_TAIL_CELLS + 3)
-#define PREPARED_LEAST 0x1p-53          /* the least share that is told from none; e, rho up to 36.8 */
+#define PREPARED_WITHIN 8.0
+#define PREPARED_BEYOND 14.0
+#define PREPARED_SHARE_STEP 0.68        /* a cell of z, */
+#define PREPARED_SHARE_CELLS 26
+#define PREPARED_SHARE_ZERO 10          /* of which the tenth ends at t = 0 */
+#define PREPARED_SHARE_FIRST (-12.908548742233984)   /* t at both ends */
+#define PREPARED_SHARE_LAST 17.288385820467795
+#define PREPARED_SHARE_LEAST 37.0       /* the least share that is told from none: 2^-53 */
+#define PREPARED_SHARE_ROW (PREPARED_SHARE_CELLS + 3)
+#define PREPARED_NORMAL_CELLS 52        /* two where TAIL has one */
+#define PREPARED_VIEWS_CELLS 64
+#define PREPARED_VIEW_CELLS 32          /* rows of TAIL, less 1 */
 /* Visible normals drawn from above the mean plane end at a radius beyond which less than this share lies: there
  * the two parts of the sampler meet, which without an end would only do so at infinity. */
 #define PREPARED_CUT 0x1p-26
-#define PREPARED_Z_END 2.4625           /* (-log of it)^(1/4), rounded up */
-#define PREPARED_TAIL_END 2.0565        /* (-log of it)^(1/5), rounded up */
-#define PREPARED_VIEW_END .96875          /* v beyond this counts as this for TAIL */
-#define PREPARED_POWER(q2) (0.2 + (2.0 / 15) / (1 + 100 * (q2)))
-#define PREPARED_STEEP(q2) (0.2 * (q2) / (1 + (q2)))
 
 enum {
     PREPARED_LOG_MASS = PREPARED_OWN,
@@ -84,12 +89,19 @@ enum {
     PREPARED_IS_BENT,            /* 1 where prepare said so: see PREPARED_BENT */
     PREPARED_FALL,               /* d log J/d log y far out, then */
     PREPARED_EDGE,               /* radius beyond which PREPARED_CUT of what an edge-on view sees lies */
+    PREPARED_NEAR,               /* c of VIEWS over T0, */
+    PREPARED_FARTHEST,           /* its last y, */
+    PREPARED_PER_VIEW,           /* and cells per unit of y */
+    PREPARED_NORMAL_START,       /* d log r/dt before the first t */
+    PREPARED_NORMAL_END,         /* and beyond the last, */
+    PREPARED_TAIL_START,         /* d log eta/dt likewise */
+    PREPARED_TAIL_END,
     PREPARED_AREA = PREPARED_OWN + 16,
     PREPARED_DEEP = PREPARED_AREA + PREPARED_PIECES,
-    PREPARED_BELOW = PREPARED_DEEP + PREPARED_PIECES,
-    PREPARED_NORMAL = PREPARED_BELOW + PREPARED_BELOW_CELLS + 3,
-    PREPARED_TAIL = PREPARED_NORMAL + PREPARED_NORMAL_CELLS + 3,
-    PREPARED_END = PREPARED_TAIL + PREPARED_TAIL_ROW * (PREPARED_VIEW_CELLS + 3)
+    PREPARED_NORMAL = PREPARED_DEEP + PREPARED_PIECES,
+    PREPARED_VIEWS = PREPARED_NORMAL + PREPARED_NORMAL_CELLS + 3,
+    PREPARED_TAIL = PREPARED_VIEWS + PREPARED_VIEWS_CELLS + 3,
+    PREPARED_END = PREPARED_TAIL + PREPARED_SHARE_ROW * (PREPARED_VIEW_CELLS + 3)
 };
 
 #endif

@@ -85,24 +85,6 @@ double aspi_prepared_edge_on(const prepared_source *s)
     return 2 * step * sum;
 }
 
-/* BELOW, for the samplers. */
-static void prepared_below_table(const prepared_source *s, const prepared_kernels *kernel, double t0, double *out)
-{
-    const int m = PREPARED_BELOW_CELLS;
-    double below[PREPARED_BELOW_CELLS + 1];
-    int i;
-    below[0] = aspi_log_64(0.5 / (t0 * t0)) - aspi_prepared_log(s, 0);
-    for (i = 1; i < m; i++) {
-        double root = (double)i / (m - i), mu = t0 * (root * root) * (root * root);
-        double here = aspi_prepared_log(s, mu * mu);
-        /* where P22 is long gone the differences of its logarithm are, too */
-        below[i] = here < -1e7 ? below[i - 1]
-                 : prepared_log_area(s, kernel, mu) - here - 1.5 * aspi_log_64(mu * mu + t0 * t0);
-    }
-    below[m] = below[m - 1];
-    aspi_prepared_spline(m, 1.0 / m, below, 1, 0, 0, out, 1);
-}
-
 /* ------------------------------------------------------------------ polynomials by pieces */
 
 typedef char prepared_pieces_fit[PREPARED_PIECES == ASP_PIECES_NUMBERS && ASP_PIECES_TERMS == 7 ? 1 : -1];
@@ -247,5 +229,4 @@ void aspi_prepared_area_tables(const prepared_source *s, double t0, double *out)
     y = 1 / (1 + prepared_half_octave(PREPARED_AREA_OCTAVE, last));
     prepared_look(s, &kernel, t0, y, 0, &p);
     prepared_area_piece(&p, t0, out + PREPARED_AREA, last);
-    prepared_below_table(s, &kernel, t0, out + PREPARED_BELOW);
 }

@@ -12,7 +12,8 @@ typedef struct prepared_source {
     const asp_ndf *k;
     aspi_log_density *f;
     double log_mass;             /* of e^f */
-    double low, high;            /* log r below which there is nothing, above which P22 is a power */
+    double at;                   /* log r of the largest ring, */
+    double low, high;            /* below which there is nothing, above which P22 is a power */
 } prepared_source;
 
 typedef double prepared_integrand(const void *context, double t);
@@ -28,6 +29,8 @@ typedef struct prepared_panels {
 } prepared_panels;
 
 double aspi_prepared_log(const prepared_source *s, double r2);
+/* About the largest logarithm from a radius on. */
+double aspi_prepared_base(const prepared_source *s, double radius);
 
 /* Coefficients, divided by 6, of the cubic B-spline on n cells of width h with values y[0 ... n],
  * y[j] = value[j step], and slopes d0, d1 at the ends: out[0 ... n + 2], out_step apart. */
@@ -41,7 +44,7 @@ double aspi_prepared_end_slope(const double *y, int step);
  * t = high; there the integrand goes on as a power of the radius. */
 void aspi_prepared_integrate(prepared_integrand *g, const void *context, double low, double power, double high,
                              double longest, double least, prepared_panels *out);
-/* log of the radius where -log of the share beyond is rho. `panel` is where to look from; it moves on with
+/* log of the radius where -log of the share beyond is rho. `panel` is where to sight from; it moves on with
  * growing rho. */
 double aspi_prepared_radius(const prepared_panels *p, prepared_integrand *g, const void *context, double rho,
                             int *panel);
@@ -52,11 +55,27 @@ void aspi_prepared_rings(const prepared_source *s, prepared_panels *out);
 
 /* J(0), half the unit of slopes. */
 double aspi_prepared_edge_on(const prepared_source *s);
-/* AREA and BELOW. */
+/* AREA and DEEP. */
 void aspi_prepared_area_tables(const prepared_source *s, double t0, double *table);
+/* r^2 P22 of slopes sqrt(mu^2 + eta^2) seen from below by a view of slope mu, eta (eta - mu atan(eta/mu)) P22 of
+ * eta, per unit of t = log eta and of e^base. */
+typedef struct prepared_sight {
+    const prepared_source *s;
+    double mu, base;
+} prepared_sight;
+
+prepared_sight aspi_prepared_sight(const prepared_source *s, double mu);
+double aspi_prepared_seen(const void *sight, double t);
+void aspi_prepared_sight_panels(const prepared_sight *sight, double t0, double longest, double least,
+                               prepared_panels *out);
+/* -log of the share beyond at t = log(within/beyond). */
+double aspi_prepared_rho(double t);
+
 /* NORMAL. */
-void aspi_prepared_normal_table(const prepared_source *s, double *out);
-/* TAIL; *edge is PREPARED_EDGE's. */
-void aspi_prepared_tail_table(const prepared_source *s, double t0, double *edge, double *out);
+void aspi_prepared_normal_table(const prepared_source *s, double *table);
+/* VIEWS; mu of every row of TAIL. */
+void aspi_prepared_views(const prepared_source *s, double t0, double *table, double mu[PREPARED_VIEW_CELLS + 1]);
+/* TAIL. */
+void aspi_prepared_tail_table(const prepared_source *s, double t0, const double *mu, double *table);
 
 #endif

@@ -11,7 +11,6 @@
 #define PREPARED_AREA_FROM ASP_PIECES_FROM(PREPARED_AREA_OCTAVE)
 #define PREPARED_DEEP_FROM ASP_PIECES_FROM(PREPARED_DEEP_OCTAVE)
 #define PREPARED_DEEP_Y(y) aspi_max(y, R(1e-30))
-#define prepared_view ASP_NDF_NAME(_prepared_view)
 #endif
 
 #ifndef PREPARED_OWN_SIGMA
@@ -29,13 +28,6 @@ ASP_FN asp_real prepared_far(const asp_shape *k, asp_real h, asp_real b)
     asp_v3 p = prepared_place(h, b);
     asp_real area = aspi_pieces(k->table + PREPARED_AREA, PREPARED_AREA_FROM, p.x, p.y);
     return p.z * p.y * aspi_max(area, R(0.0));
-}
-
-/* q^(1/4)/(1 + q^(1/4)). */
-ASP_FN asp_real prepared_view(asp_real h, asp_real b)
-{
-    asp_real y = aspi_sqrt(aspi_sqrt(aspi_sqrt(b))), x = aspi_sqrt(aspi_sqrt(h));
-    return x / aspi_max(x + y, PREPARED_TINY);
 }
 
 /* The same relative to itself; deep: what DEEP holds. */

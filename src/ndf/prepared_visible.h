@@ -2,8 +2,11 @@
 
 #ifndef PREPARED_VISIBLE_NAMES
 #define PREPARED_VISIBLE_NAMES
-#define prepared_tail_at ASP_NDF_NAME(_prepared_tail_at)
+#define prepared_share ASP_NDF_NAME(_prepared_share)
+#define prepared_share_at ASP_NDF_NAME(_prepared_share_at)
 #define prepared_plain ASP_NDF_NAME(_prepared_plain)
+#define prepared_row ASP_NDF_NAME(_prepared_row)
+#define prepared_tail_at ASP_NDF_NAME(_prepared_tail_at)
 #define prepared_tail ASP_NDF_NAME(_prepared_tail)
 #define prepared_draw ASP_NDF_NAME(_prepared_draw)
 #define prepared_begin ASP_NDF_NAME(_prepared_begin)
@@ -13,12 +16,31 @@
 #define prepared_step ASP_NDF_NAME(_prepared_step)
 #endif
 
-/* Radius of the slope beyond which the share e^-e of all slopes lies. */
-ASP_FN asp_real prepared_plain(const asp_shape *k, asp_real e)
+/* t = log(within/beyond), of which NORMAL and TAIL are tables; both shares of any common scale. */
+ASP_FN asp_real prepared_share(asp_real within, asp_real beyond)
 {
-    asp_real root = aspi_sqrt(e);
-    asp_real z = aspi_sqrt(root) * R(PREPARED_NORMAL_CELLS / PREPARED_Z_END);
-    return root * aspi_exp(prepared_spline_at(k->table + PREPARED_NORMAL, PREPARED_NORMAL_CELLS, z));
+    return aspi_log(aspi_max(within, PREPARED_TINY) / aspi_max(beyond, PREPARED_TINY));
+}
+
+/* Where t lies among the cells: x, and y what t is beyond the first of them (negative) or the last. */
+ASP_FN asp_v2 prepared_share_at(asp_real t)
+{
+    asp_real s = t * aspi_select(t < R(0.0), R(1.0 / PREPARED_WITHIN), R(1.0 / PREPARED_BEYOND));
+    asp_real z = t / aspi_sqrt(R(1.0) + s * s);
+    asp_real cells = z * R(1.0 / PREPARED_SHARE_STEP) + R(PREPARED_SHARE_ZERO);
+    asp_v2 out;
+    out.x = aspi_min(aspi_max(cells, R(0.0)), R(PREPARED_SHARE_CELLS));
+    out.y = aspi_min(t, R(PREPARED_SHARE_LEAST)) - aspi_min(aspi_max(t, R(PREPARED_SHARE_FIRST)), R(PREPARED_SHARE_LAST));
+    return out;
+}
+
+/* Radius of the slope that has the shares of t. */
+ASP_FN asp_real prepared_plain(const asp_shape *k, asp_real t)
+{
+    asp_v2 at = prepared_share_at(t);
+    asp_real x = at.x * R(PREPARED_NORMAL_CELLS / PREPARED_SHARE_CELLS);
+    asp_real more = at.y * aspi_select(t < R(0.0), k->table[PREPARED_NORMAL_START], k->table[PREPARED_NORMAL_END]);
+    return aspi_exp(prepared_spline_at(k->table + PREPARED_NORMAL, PREPARED_NORMAL_CELLS, x) + more);
 }
 
 #ifndef PREPARED_OWN_NORMAL
@@ -26,7 +48,7 @@ ASP_FN asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
 {
     asp_real last = R(1.0) - (ASP_PRECISION == 64 ? R(0x1p-53) : R(0x1p-24));
     asp_real u = aspi_select(u1 > last, last, u1);
-    asp_real r = prepared_plain(k, aspi_abs(aspi_log1p(-u)));
+    asp_real r = prepared_plain(k, prepared_share(u, R(1.0) - u));
     asp_v2 t = aspi_sincos2pi(u2);
     asp_v3 m;
     m.x = r * t.x;
@@ -36,37 +58,36 @@ ASP_FN asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
 }
 #endif
 
-/* The table of TAIL at v and z, both in cells. */
-ASP_FN asp_real prepared_tail_at(const asp_shape *k, asp_real v, asp_real z)
+/* The row of TAIL, in cells, of a view; h and s: its height and length, b = (s T0)^2. */
+ASP_FN asp_real prepared_row(const asp_shape *k, asp_real h, asp_real b)
 {
-    int p = prepared_cell(v, PREPARED_VIEW_CELLS), q = prepared_cell(z, PREPARED_TAIL_CELLS);
-    asp_real tp = v - (asp_real)p, tq = z - (asp_real)q, sp = R(1.0) - tp, sq = R(1.0) - tq;
+    asp_real unit = aspi_max(aspi_sqrt(b) * k->table[PREPARED_NEAR], PREPARED_TINY);
+    asp_real y = aspi_min(aspi_log((h + unit) / unit), k->table[PREPARED_FARTHEST]);
+    asp_real x = prepared_spline_at(k->table + PREPARED_VIEWS, PREPARED_VIEWS_CELLS, y * k->table[PREPARED_PER_VIEW]);
+    return aspi_min(aspi_max(x, R(0.0)), R(PREPARED_VIEW_CELLS));
+}
+
+/* TAIL at row and cell. */
+ASP_FN asp_real prepared_tail_at(const asp_shape *k, asp_real row, asp_real cell)
+{
+    int p = prepared_cell(row, PREPARED_VIEW_CELLS), q = prepared_cell(cell, PREPARED_SHARE_CELLS);
+    asp_real tp = row - (asp_real)p, tq = cell - (asp_real)q, sp = R(1.0) - tp, sq = R(1.0) - tq;
     asp_v2 wp = prepared_weights(tp), wq = prepared_weights(tq);
     asp_real w0 = sp * sp * sp, w3 = tp * tp * tp, z0 = sq * sq * sq, z3 = tq * tq * tq;
     const asp_real *c = k->table + PREPARED_TAIL;
-    int i = p * PREPARED_TAIL_ROW + q;
+    int i = p * PREPARED_SHARE_ROW + q;
 #define ROW(i) ((c[i] * z0 + c[(i) + 1] * wq.x) + (c[(i) + 2] * wq.y + c[(i) + 3] * z3))
-    return (ROW(i) * w0 + ROW(i + PREPARED_TAIL_ROW) * wp.x)
-         + (ROW(i + 2 * PREPARED_TAIL_ROW) * wp.y + ROW(i + 3 * PREPARED_TAIL_ROW) * w3);
+    return (ROW(i) * w0 + ROW(i + PREPARED_SHARE_ROW) * wp.x)
+         + (ROW(i + 2 * PREPARED_SHARE_ROW) * wp.y + ROW(i + 3 * PREPARED_SHARE_ROW) * w3);
 #undef ROW
 }
 
-/* s eta of the slope sqrt(mu^2 + eta^2) beyond which the share `u` of what is seen from below lies, with `rest`
- * = 1 - u; h and s: height and length of the view, b = (s T0)^2. */
-ASP_FN asp_real prepared_tail(const asp_shape *k, asp_real h, asp_real b, asp_real u, asp_real rest)
+/* s eta of the slope sqrt(mu^2 + eta^2) with the shares of t among those that are seen from below. */
+ASP_FN asp_real prepared_tail(const asp_shape *k, asp_real h, asp_real b, asp_real t)
 {
-    asp_real h2 = h * h, y = aspi_sqrt(aspi_sqrt(b)), x = aspi_sqrt(h);
-    asp_real v = x / aspi_max(x + y, PREPARED_TINY);
-    asp_real rho = aspi_abs(aspi_log_near(aspi_max(u, R(PREPARED_LEAST)), -rest))
-                 + (ASP_PRECISION == 64 ? R(1e-30) : R(1e-20));
-    asp_real l = aspi_log(rho), z = R(1.0) + aspi_expm1(R(0.2) * l);
-    asp_real power = R(0.2) + R(2.0 / 15.0) * b / aspi_max(b + R(100.0) * h2, PREPARED_TINY);
-    asp_real w = prepared_tail_at(k, aspi_min(v, R(PREPARED_VIEW_END)) * R(PREPARED_VIEW_CELLS / PREPARED_VIEW_END),
-                                  aspi_min(z, R(PREPARED_TAIL_END)) * R(PREPARED_TAIL_CELLS / PREPARED_TAIL_END));
-    asp_real unit = prepared_spline_at(k->table + PREPARED_BELOW, PREPARED_BELOW_CELLS,
-                                       prepared_view(h, b) * R(PREPARED_BELOW_CELLS));
-    asp_real l2 = h2 + b, steep = R(0.2) * h2 / aspi_max(l2, PREPARED_TINY);
-    return aspi_sqrt(l2) * aspi_exp((power * l + steep * unit) + w);
+    asp_v2 at = prepared_share_at(t);
+    asp_real more = at.y * aspi_select(t < R(0.0), k->table[PREPARED_TAIL_START], k->table[PREPARED_TAIL_END]);
+    return aspi_sqrt(h * h + b) * aspi_exp(prepared_tail_at(k, prepared_row(k, h, b), at.x) + more);
 }
 
 /* c phi + g sin(phi) from c + g, which for c near -g is all that is left of the two. */
@@ -135,9 +156,8 @@ ASP_FN asp_v2 prepared_turn(asp_real c, asp_real g, asp_real r, asp_real u)
 typedef struct prepared_draw {
     asp_real c, s, h, b;
     asp_real most;               /* the largest eta */
-    asp_real inner;              /* positive: from all normals, */
-    asp_real e;                  /* e as in prepared_plain; */
-    asp_real share, rest;        /* else as in prepared_tail */
+    asp_real inner;              /* positive: from all normals */
+    asp_real t;                  /* the shares that are drawn */
 } prepared_draw;
 
 ASP_FN prepared_draw prepared_begin(const asp_shape *k, asp_v3 v, asp_real u1)
@@ -146,11 +166,8 @@ ASP_FN prepared_draw prepared_begin(const asp_shape *k, asp_v3 v, asp_real u1)
     asp_real scale = R(1.0) / aspi_sqrt(s2 + v.z * v.z);
     asp_real c = v.z * scale, s = aspi_sqrt(s2) * scale, up = aspi_max(c, R(0.0));
     asp_real b = s * s * k->table[PREPARED_SCALE2];
-    asp_real far = prepared_far(k, aspi_abs(c), b), sigma = up + far, down = R(1.0) - u1;
-    asp_real inv_far = R(1.0) / aspi_max(far, PREPARED_TINY);
+    asp_real far = prepared_far(k, aspi_abs(c), b), sigma = aspi_select(c > R(0.0), up + far, R(1.0));
     asp_real inner = up - u1 * sigma;
-    asp_real left = aspi_max(inner / aspi_max(up, PREPARED_TINY), ASP_PRECISION == 64 ? R(0x1p-53) : R(0x1p-24));
-    asp_real share = aspi_min(-inner * inv_far, R(1.0)), rest = aspi_min(down * sigma * inv_far, R(1.0));
     asp_real edge = s * k->table[PREPARED_EDGE];
     prepared_draw d;
     d.most = aspi_select(c > R(0.0), aspi_sqrt(aspi_max(edge * edge - c * c, R(0.0))), PREPARED_HUGE);
@@ -159,9 +176,7 @@ ASP_FN prepared_draw prepared_begin(const asp_shape *k, asp_v3 v, asp_real u1)
     d.h = aspi_abs(c);
     d.b = b;
     d.inner = inner;
-    d.e = aspi_abs(aspi_log(left));
-    d.share = aspi_select(c > R(0.0), share, u1);
-    d.rest = aspi_select(c > R(0.0), rest, down);
+    d.t = prepared_share(sigma * aspi_select(inner > R(0.0), u1, R(1.0) - u1), aspi_abs(inner));
     return d;
 }
 
@@ -183,11 +198,11 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
     prepared_draw d = prepared_begin(k, v, u1);
     asp_real x, z, root;
     if (d.inner > R(0.0)) {
-        x = aspi_min(prepared_plain(k, d.e), k->table[PREPARED_EDGE]);
+        x = aspi_min(prepared_plain(k, d.t), k->table[PREPARED_EDGE]);
         z = R(1.0);
         root = aspi_sqrt(aspi_max(d.s * x * (d.s * x) - d.c * d.c, R(0.0)));
     } else {
-        asp_real eta = aspi_min(prepared_tail(k, d.h, d.b, d.share, d.rest), d.most);
+        asp_real eta = aspi_min(prepared_tail(k, d.h, d.b, d.t), d.most);
         x = aspi_sqrt(d.h * d.h + eta * eta);
         z = d.s;
         root = d.s * eta;
@@ -205,9 +220,9 @@ ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_rea
                                      const asp_real *ASP_RESTRICT u2, asp_real *ASP_RESTRICT mx,
                                      asp_real *ASP_RESTRICT my, asp_real *ASP_RESTRICT mz)
 {
-    asp_real c[PREPARED_BLOCK], s[PREPARED_BLOCK], b[PREPARED_BLOCK], share[PREPARED_BLOCK];
-    asp_real rest[PREPARED_BLOCK], inner[PREPARED_BLOCK], x[PREPARED_BLOCK], z[PREPARED_BLOCK];
-    asp_real root[PREPARED_BLOCK], most[PREPARED_BLOCK], far[5][PREPARED_BLOCK];
+    asp_real c[PREPARED_BLOCK], s[PREPARED_BLOCK], b[PREPARED_BLOCK], t[PREPARED_BLOCK];
+    asp_real inner[PREPARED_BLOCK], x[PREPARED_BLOCK], z[PREPARED_BLOCK];
+    asp_real root[PREPARED_BLOCK], most[PREPARED_BLOCK], far[4][PREPARED_BLOCK];
     int place[PREPARED_BLOCK];
     size_t from, i, count, tails;
     for (from = 0; from < n; from += PREPARED_BLOCK) {
@@ -218,11 +233,10 @@ ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_rea
             c[i] = d.c;
             s[i] = d.s;
             b[i] = d.b;
-            share[i] = d.share;
-            rest[i] = d.rest;
+            t[i] = d.t;
             most[i] = d.most;
             inner[i] = d.inner;
-            x[i] = aspi_min(prepared_plain(k, d.e), k->table[PREPARED_EDGE]);
+            x[i] = aspi_min(prepared_plain(k, d.t), k->table[PREPARED_EDGE]);
             z[i] = R(1.0);
             root[i] = aspi_sqrt(aspi_max(d.s * x[i] * (d.s * x[i]) - d.c * d.c, R(0.0)));
         }
@@ -234,12 +248,11 @@ ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_rea
             int j = place[i];
             far[0][i] = aspi_abs(c[j]);
             far[1][i] = b[j];
-            far[2][i] = share[j];
-            far[3][i] = rest[j];
-            far[4][i] = most[j];
+            far[2][i] = t[j];
+            far[3][i] = most[j];
         }
         for (i = 0; i < tails; i++)
-            far[0][i] = aspi_min(prepared_tail(k, far[0][i], far[1][i], far[2][i], far[3][i]), far[4][i]);
+            far[0][i] = aspi_min(prepared_tail(k, far[0][i], far[1][i], far[2][i]), far[3][i]);
         for (i = 0; i < tails; i++) {
             int j = place[i];
             x[j] = aspi_sqrt(c[j] * c[j] + far[0][i] * far[0][i]);
