@@ -44,7 +44,7 @@ double aspi_prepared_end_slope(const double *y, int step);
  * t = high; there the integrand goes on as a power of the radius. */
 void aspi_prepared_integrate(prepared_integrand *g, const void *context, double low, double power, double high,
                              double longest, double least, prepared_panels *out);
-/* log of the radius where -log of the share beyond is rho. `panel` is where to sight from; it moves on with
+/* log of the radius where -log of the share beyond is rho. `panel` is where to look from; it moves on with
  * growing rho. */
 double aspi_prepared_radius(const prepared_panels *p, prepared_integrand *g, const void *context, double rho,
                             int *panel);

@@ -25,12 +25,11 @@ ASP_FN asp_real prepared_share(asp_real within, asp_real beyond)
 /* Where t lies among the cells: x, and y what t is beyond the first of them (negative) or the last. */
 ASP_FN asp_v2 prepared_share_at(asp_real t)
 {
-    asp_real s = t * aspi_select(t < R(0.0), R(1.0 / PREPARED_WITHIN), R(1.0 / PREPARED_BEYOND));
-    asp_real z = t / aspi_sqrt(R(1.0) + s * s);
-    asp_real cells = z * R(1.0 / PREPARED_SHARE_STEP) + R(PREPARED_SHARE_ZERO);
+    asp_real in = aspi_min(aspi_max(t, R(PREPARED_SHARE_FIRST)), R(PREPARED_SHARE_LAST));
+    asp_real s = aspi_min(in, R(0.0)) * R(1.0 / PREPARED_WITHIN) + aspi_max(in, R(0.0)) * R(1.0 / PREPARED_BEYOND);
     asp_v2 out;
-    out.x = aspi_min(aspi_max(cells, R(0.0)), R(PREPARED_SHARE_CELLS));
-    out.y = aspi_min(t, R(PREPARED_SHARE_LEAST)) - aspi_min(aspi_max(t, R(PREPARED_SHARE_FIRST)), R(PREPARED_SHARE_LAST));
+    out.x = in / aspi_sqrt(R(1.0) + s * s) * R(1.0 / PREPARED_SHARE_STEP) + R(PREPARED_SHARE_ZERO);
+    out.y = aspi_min(t, R(PREPARED_SHARE_LEAST)) - in;
     return out;
 }
 
@@ -39,7 +38,8 @@ ASP_FN asp_real prepared_plain(const asp_shape *k, asp_real t)
 {
     asp_v2 at = prepared_share_at(t);
     asp_real x = at.x * R(PREPARED_NORMAL_CELLS / PREPARED_SHARE_CELLS);
-    asp_real more = at.y * aspi_select(t < R(0.0), k->table[PREPARED_NORMAL_START], k->table[PREPARED_NORMAL_END]);
+    asp_real more = aspi_min(at.y, R(0.0)) * k->table[PREPARED_NORMAL_START]
+                  + aspi_max(at.y, R(0.0)) * k->table[PREPARED_NORMAL_END];
     return aspi_exp(prepared_spline_at(k->table + PREPARED_NORMAL, PREPARED_NORMAL_CELLS, x) + more);
 }
 
@@ -86,7 +86,8 @@ ASP_FN asp_real prepared_tail_at(const asp_shape *k, asp_real row, asp_real cell
 ASP_FN asp_real prepared_tail(const asp_shape *k, asp_real h, asp_real b, asp_real t)
 {
     asp_v2 at = prepared_share_at(t);
-    asp_real more = at.y * aspi_select(t < R(0.0), k->table[PREPARED_TAIL_START], k->table[PREPARED_TAIL_END]);
+    asp_real more = aspi_min(at.y, R(0.0)) * k->table[PREPARED_TAIL_START]
+                  + aspi_max(at.y, R(0.0)) * k->table[PREPARED_TAIL_END];
     return aspi_sqrt(h * h + b) * aspi_exp(prepared_tail_at(k, prepared_row(k, h, b), at.x) + more);
 }
 
