@@ -95,6 +95,29 @@ static void density_n_other(const asp_ndf *k, size_t n, const double *mx, const 
     out[n - 1] *= 1 + 2e-16;
 }
 
+static double sigma_tenth(const asp_ndf *k, double wx, double wy, double wz)
+{
+    return 1.0001 * ggx.f64.sigma(k, wx, wy, wz);
+}
+
+/* Not functions: every second call differs. */
+static double density_drifts(const asp_ndf *k, double mx, double my, double mz)
+{
+    static unsigned calls;
+    return (calls++ & 1 ? 1.0000001 : 1) * ggx.f64.density(k, mx, my, mz);
+}
+
+static void visible_drifts(const asp_ndf *k, double vx, double vy, double vz, double u1, double u2,
+                           double m[3])
+{
+    static unsigned calls;
+    ggx.f64.visible(k, vx, vy, vz, u1, u2, m);
+    if (calls++ & 1) {
+        double z = 1e-3 * m[2], size = sqrt(m[0] * m[0] + m[1] * m[1] + z * z);
+        m[0] /= size; m[1] /= size; m[2] = z / size;
+    }
+}
+
 static float sigma_coarse(const asp_ndff *k, float wx, float wy, float wz)
 {
     return ggx.f32.sigma(k, wx, wy, wz) * 1.000003f;
@@ -120,6 +143,9 @@ SPOIL(spoil_density_nan, f64.density, density_nan_lost)
 SPOIL(spoil_sigma_more, f64.sigma, sigma_more)
 SPOIL(spoil_sigma_cancels, f64.sigma, sigma_cancels)
 SPOIL(spoil_sigma_negative, f64.sigma, sigma_negative)
+SPOIL(spoil_sigma_tenth, f64.sigma, sigma_tenth)
+SPOIL(spoil_density_drifts, f64.density, density_drifts)
+SPOIL(spoil_visible_drifts, f64.visible, visible_drifts)
 SPOIL(spoil_visible_normal, f64.visible, visible_as_normal)
 SPOIL(spoil_visible_jumps, f64.visible, visible_jumps)
 SPOIL(spoil_normal_end, f64.normal, normal_end)
@@ -193,6 +219,11 @@ static const mistake mistakes[] = {
     { "visible normals that are all normals", "batch", "toy:alpha=0.3", spoil_visible_normal },
     { "a view two degrees off", "sample_visible", "toy:alpha=0.3", spoil_visible_turned },
     { "a view two degrees off", "sample_bsdf", "toy:alpha=0.3", spoil_visible_turned },
+    { "a view two degrees off", "sample_materials", "toy:alpha=0.3", spoil_visible_turned },
+    { "sigma 1e-4 too large", "weak_furnace", "toy:alpha=0.3", spoil_sigma_tenth },
+    { "a density that is no function", "adjoint", "toy:alpha=0.3", spoil_density_drifts },
+    { "a density that is no function", "reciprocity", "toy:alpha=0.3", spoil_density_drifts },
+    { "a sampler that is no function", "limits", "toy:alpha=0.3", spoil_visible_drifts },
     { "half of the normals", "sample_normal", "toy:alpha=0.3", spoil_normal_half },
     { "D and sampler of different roughness", "sample_visible", "toy:alpha=0.3",
       spoil_density_sharper },

@@ -107,6 +107,8 @@ int cmd_mask(const cmd_args *args, const char *option, int *out);
  * facets of a distribution; --mask overrules the material's. cmd_surface: there must be just one. */
 int cmd_surface_at(const cmd_args *args, const char *option, size_t index, asp_material *out);
 int cmd_surface(const cmd_args *args, asp_material *out);
+/* The same of a spec whose name says which of the two it is. */
+int cmd_surface_spec(const cmd_args *args, const char *spec, asp_material *out);
 /* Says what is wrong with `spec`, which is no distribution by `err`; `given` stands before it
  * ("--ndf ", ""). CMD_USAGE. */
 int cmd_bad_ndf(const char *given, const char *spec, const asp_error *err);

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define LAWS 32
+#define LAWS 64
 #define THREADS 64
 
 /* What became of one law over the distributions of a group. */

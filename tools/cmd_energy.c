@@ -84,32 +84,6 @@ static int fill(const char *spec, double value, char *out, size_t size)
     return snprintf(out, size, "%.*s%s%s", (int)(hole - spec), spec, number, hole + 2) < (int)size;
 }
 
-/* A material, or the perfect mirror facets of a distribution. */
-static int surface(const cmd_args *args, const char *spec, asp_material *out)
-{
-    asp_error err;
-    char name[64];
-    size_t length = strcspn(spec, ":");
-    int mask = 0, status = cmd_given(args, "mask") ? cmd_mask(args, "mask", &mask) : CMD_OK;
-    asp_ndf ndf;
-    if (status != CMD_OK)
-        return status;
-    snprintf(name, sizeof name, "%.*s", (int)(length < 63 ? length : 63), spec);
-    if (asp_find_model(NULL, name)) {
-        if (asp_ndf_parse(NULL, spec, &ndf, &err) != ASP_OK)
-            return cmd_bad_ndf("", spec, &err);
-        *out = asp_mirror(&ndf, mask);
-        return CMD_OK;
-    }
-    if (asp_material_parse(NULL, spec, out, &err) != ASP_OK) {
-        char line[640];
-        return cmd_usage("%s: %s", spec, asp_error_text(&err, line, sizeof line));
-    }
-    if (cmd_given(args, "mask"))
-        out->mask = mask;
-    return CMD_OK;
-}
-
 /* `LOW:HIGH:N` */
 static int read_over(const char *text, double *low, double *high, int *n)
 {
@@ -161,7 +135,7 @@ static int measure(const cmd_args *args, const char *spec, int over, double low,
         if (!fill(spec, x, filled, sizeof filled))
             return cmd_usage("%s: too long", spec);
         if (over || i == 0) {
-            status = surface(args, filled, &mat);
+            status = cmd_surface_spec(args, filled, &mat);
             if (status != CMD_OK)
                 return status;
         }

@@ -22,8 +22,9 @@ static void known_names(const char *option, int at_start, const char *names[128]
     names[used] = NULL;
 }
 
-/* `--ndf ggx:alpha=-1: byte 10: alpha = -1 is outside ...`; with the name that was meant. */
-static int bad_value(const char *option, const char *text, const asp_error *err)
+/* `--ndf ggx:alpha=-1: byte 10: alpha = -1 is outside ...`; with the name that was meant. `given` is what
+ * stands before the text, option what it is. */
+static int bad_value(const char *given, const char *option, const char *text, const asp_error *err)
 {
     char line[640], what[700];
     const char *names[128], *nearest = NULL;
@@ -32,13 +33,13 @@ static int bad_value(const char *option, const char *text, const asp_error *err)
         int at_start = err->position == 0;
         known_names(option, at_start, names);
         if (at_start) {
-            snprintf(what, sizeof what, "--%s %s: unknown %s", option, text,
+            snprintf(what, sizeof what, "%s%s: unknown %s", given, text,
                      strcmp(option, "ndf") ? "material" : "distribution");
             return cmd_unknown(what, err->name, names);
         }
         nearest = cmd_nearest(err->name, names);
     }
-    return cmd_usage("--%s %s: %s%s%s%s", option, text, line, nearest ? "; did you mean '" : "",
+    return cmd_usage("%s%s: %s%s%s%s", given, text, line, nearest ? "; did you mean '" : "",
                      nearest ? nearest : "", nearest ? "'?" : "");
 }
 
@@ -97,31 +98,39 @@ asp_status cmd_read_ndf(const char *spec, asp_ndf *out, asp_error *err)
     return status;
 }
 
-int cmd_ndf(const cmd_args *args, const char *option, size_t index, asp_ndf *out)
+static int read_ndf(const char *given, const char *spec, asp_ndf *out)
 {
     asp_error err;
-    const char *spec = cmd_text_at(args, option, index);
     if (cmd_read_ndf(spec, out, &err) == ASP_OK)
         return CMD_OK;
     if (from_file(&err))
         return cmd_error(&err);
     if (err.status != ASP_EUNKNOWN || err.position != 0)
-        return bad_value(option, spec, &err);
+        return bad_value(given, "ndf", spec, &err);
+    return cmd_bad_ndf(given, spec, &err);
+}
+
+static int read_material(const char *given, const char *spec, asp_material *out)
+{
+    asp_error err;
+    void *memory;
+    if (asp_material_read(NULL, spec, out, &memory, &err) == ASP_OK)
+        return keep(memory) == CMD_OK ? CMD_OK : cmd_failed("more than 256 distributions from files");
+    return from_file(&err) ? cmd_error(&err) : bad_value(given, "material", spec, &err);
+}
+
+int cmd_ndf(const cmd_args *args, const char *option, size_t index, asp_ndf *out)
+{
     char given[64];
     snprintf(given, sizeof given, "--%s ", option);
-    return cmd_bad_ndf(given, spec, &err);
+    return read_ndf(given, cmd_text_at(args, option, index), out);
 }
 
 int cmd_material(const cmd_args *args, const char *option, size_t index, asp_material *out)
 {
-    asp_error err;
-    const char *spec = cmd_text_at(args, option, index);
-    void *memory;
-    if (asp_material_read(NULL, spec, out, &memory, &err) == ASP_OK)
-        return keep(memory) == CMD_OK ? CMD_OK : cmd_failed("more than 256 distributions from files");
-    if (from_file(&err))
-        return cmd_error(&err);
-    return bad_value(option, spec, &err);
+    char given[64];
+    snprintf(given, sizeof given, "--%s ", option);
+    return read_material(given, cmd_text_at(args, option, index), out);
 }
 
 int cmd_mask(const cmd_args *args, const char *option, int *out)
@@ -130,7 +139,9 @@ int cmd_mask(const cmd_args *args, const char *option, int *out)
     const char *name = cmd_text(args, option);
     if (asp_mask_parse(name, out, &err) == ASP_OK)
         return CMD_OK;
-    return bad_value(option, name, &err);
+    char given[64];
+    snprintf(given, sizeof given, "--%s ", option);
+    return bad_value(given, "mask", name, &err);
 }
 
 int cmd_direction(const cmd_args *args, const char *option, asp_vec3 *out)
@@ -169,22 +180,38 @@ int cmd_direction(const cmd_args *args, const char *option, asp_vec3 *out)
     return CMD_OK;
 }
 
-int cmd_surface_at(const cmd_args *args, const char *option, size_t index, asp_material *out)
+/* A material, or the perfect mirror facets of a distribution. */
+static int read_surface(const cmd_args *args, const char *given, int is_ndf, const char *spec, asp_material *out)
 {
-    int mask = 0, status = CMD_OK;
-    if (cmd_given(args, "mask"))
+    int mask = 0, status = CMD_OK, masked = cmd_given(args, "mask") > 0;
+    asp_ndf ndf;
+    if (masked)
         status = cmd_mask(args, "mask", &mask);
-    if (status == CMD_OK && strcmp(option, "ndf") == 0) {
-        asp_ndf ndf;
-        status = cmd_ndf(args, option, index, &ndf);
+    if (status == CMD_OK && is_ndf) {
+        status = read_ndf(given, spec, &ndf);
         if (status == CMD_OK)
             *out = asp_mirror(&ndf, mask);
     } else if (status == CMD_OK) {
-        status = cmd_material(args, option, index, out);
-        if (status == CMD_OK && cmd_given(args, "mask"))
+        status = read_material(given, spec, out);
+        if (status == CMD_OK && masked)
             out->mask = mask;
     }
     return status;
+}
+
+int cmd_surface_spec(const cmd_args *args, const char *spec, asp_material *out)
+{
+    char name[64];
+    size_t length = strcspn(spec, ":");
+    snprintf(name, sizeof name, "%.*s", (int)(length < 63 ? length : 63), spec);
+    return read_surface(args, "", asp_find_model(NULL, name) != NULL, spec, out);
+}
+
+int cmd_surface_at(const cmd_args *args, const char *option, size_t index, asp_material *out)
+{
+    char given[64];
+    snprintf(given, sizeof given, "--%s ", option);
+    return read_surface(args, given, strcmp(option, "ndf") == 0, cmd_text_at(args, option, index), out);
 }
 
 int cmd_surface(const cmd_args *args, asp_material *out)

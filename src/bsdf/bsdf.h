@@ -77,6 +77,9 @@ enum { COMPENSATED_KULLA_CONTY, COMPENSATED_TURQUIN };
 asp_status aspi_parse_compensation(aspi_spec *spec, asp_material *out, asp_error *err);
 #define ASPI_COMPENSATION_KEY { "form", "kulla_conty (default) or turquin" }
 
+/* The forms of rough_diffuse, out->b.r. */
+enum { ROUGH_EXACT, ROUGH_OREN_NAYAR, ROUGH_FUJII, ROUGH_EON, ROUGH_FORMS };
+
 /* Fills the film's table: linear sRGB reflectance over the cosine. metal: NULL for out->c + i out->d. */
 void aspi_film_prepare(asp_material *out, const asp_metal *metal, double film_eta, double thickness);
 

@@ -65,6 +65,9 @@ static asp_status compensated_dielectric_prepare(asp_material *out, asp_error *e
     out->d.g = crosses / most / (thin || eta < 1.0 ? 1.0 : eta * eta);
     out->b.g = (1.0 - out->d.r * m_i) / m_o;
     out->b.b = (1.0 - out->d.g * m_o) / m_i;
+    /* the shares that cross */
+    out->a.g = out->d.r * m_i;
+    out->a.b = out->d.g * m_o;
     return ASP_OK;
 }
 
@@ -133,8 +136,7 @@ ASP_FN asp_real lobe_share(const asp_mat *mat, asp_v3 wi)
 /* Of the other samples this share crosses: A m of the other side. */
 ASP_FN asp_real crossing_share(const asp_mat *mat, asp_v3 wi)
 {
-    asp_real m_o = R(1.0) - mat->energy[ENERGY_MEAN], m_i = R(1.0) - mat->energy[ENERGY_INSIDE + ENERGY_MEAN];
-    return wi.z < R(0.0) ? mat->d.g * m_o : mat->d.r * m_i;
+    return wi.z < R(0.0) ? mat->a.b : mat->a.g;
 }
 
 ASP_FN asp_real rest_density(const asp_mat *mat, asp_v3 wi, asp_v3 wo)

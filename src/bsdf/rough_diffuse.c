@@ -18,8 +18,6 @@
 #define ROUGH_NODES 233
 #define ROUGH_STEP 144
 
-enum { ROUGH_EXACT, ROUGH_OREN_NAYAR, ROUGH_FUJII, ROUGH_EON, ROUGH_FORMS };
-
 #define ASP_NDF rough_diffuse
 #define ASP_PRECISION 64
 #include "rough_diffuse.c"
@@ -36,7 +34,7 @@ static double given_back(double a, double mean)
 
 static asp_status rough_diffuse_prepare(asp_material *out, asp_error *err)
 {
-    double angle = rough_diffuse_angle_64(&out->ndf);
+    double angle = rough_diffuse_fujii_angle_64(&out->ndf);
     /* the mean of E(w) against 2 cos dcos */
     double mean = (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * ASP_PI)) * angle) / (1.0 + (0.5 - 2.0 / (3.0 * ASP_PI)) * angle);
     (void)err;
@@ -92,6 +90,7 @@ ASP_RECORD asp_bsdf asp_bsdf_rough_diffuse = {
 #define exact_part ASP_NDF_NAME(_exact_part)
 #define named_part ASP_NDF_NAME(_named_part)
 #define slope_angle ASP_NDF_NAME(_angle)
+#define fujii_angle ASP_NDF_NAME(_fujii_angle)
 #define fujii_lost ASP_NDF_NAME(_fujii_lost)
 #endif
 
@@ -121,7 +120,7 @@ static asp_real exact_part(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *w
                                  mat->mask & 15 ? ASP_MASK_UNCORRELATED : ASP_MASK_CORRELATED);
 }
 
-/* The one number of the approximations. */
+/* The one number of the approximations; Fujii's reaches up to 1, where f is 0 at last. */
 static asp_real slope_angle(const asp_shape *k)
 {
     asp_real spread = R(0.25) * (k->map.m00 * k->map.m00 + k->map.m01 * k->map.m01
@@ -129,11 +128,17 @@ static asp_real slope_angle(const asp_shape *k)
     return aspi_atan(aspi_sqrt(spread), R(1.0));
 }
 
+static asp_real fujii_angle(const asp_shape *k)
+{
+    asp_real angle = slope_angle(k);
+    return angle < R(1.0) ? angle : R(1.0);
+}
+
 /* 1 - E(w) of fujii's form with albedo 1: with s, c the sine and cosine of the angle t, E =
  * (1 + angle/pi (s (t - s c) + 2/3 (s (1 - s^3)/c - s))) over what divides f. Along the horizon it is 0. */
 static asp_real fujii_lost(const asp_shape *k, const asp_v3 *w)
 {
-    asp_real angle = slope_angle(k), s2 = w->x * w->x + w->y * w->y, s = aspi_sqrt(s2), c = w->z;
+    asp_real angle = fujii_angle(k), s2 = w->x * w->x + w->y * w->y, s = aspi_sqrt(s2), c = w->z;
     asp_real G = s * (aspi_atan(s, c) - s * c)
                + R(2.0 / 3.0) * s * (c * (R(1.0) + s + s2) / (R(1.0) + s) - R(1.0));
     asp_real lost = angle * (R(0.5 - 2.0 / (3.0 * ASP_PI)) - R(1.0 / ASP_PI) * G)
@@ -153,6 +158,7 @@ static asp_real named_part(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *w
         s = s > R(0.0) ? s : R(0.0);
         return R(1.0) - R(0.5) * s2 / (s2 + R(0.33)) + R(0.45) * s2 / (s2 + R(0.09)) * s / t;
     }
+    angle = fujii_angle(k);
     t = s > R(0.0) ? aspi_max(aspi_max(wi->z, wo->z), ASP_SMALLEST) : R(1.0);
     return (R(1.0) + angle * s / t) / (R(1.0) + R(0.5 - 2.0 / (3.0 * ASP_PI)) * angle);
 }
@@ -174,8 +180,9 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
 static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
 {
     asp_real p = aspi_above(wo->z) * R(1.0 / ASP_PI);
+    asp_real nothing = (wi->x + wi->y + wi->z + wo->x + wo->y) * R(0.0);
     (void)mat;
-    return wi->z <= R(0.0) ? R(0.0) : p + wi->z * R(0.0);
+    return wi->z <= R(0.0) ? nothing : p + nothing;
 }
 
 static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2, asp_real u3,

@@ -535,10 +535,11 @@ asp_real ASPI_CALL(asp_walk_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
     walker r = start_walk(mat, wi, 0, 0);
     asp_v3 v = facing(r.d, r.inside);
     int out = wo.z < R(0.0);
-    asp_real seen, once, first, height = aspi_abs(wo.z), c, eta;
+    asp_real nothing = (wi.x + wi.y + wi.z + wo.x + wo.y + wo.z) * R(0.0);
+    asp_real seen, once, first, height = aspi_abs(wo.z) + nothing, c, eta;
     if (!walkable(mat, wi) || wo.z == R(0.0)
         || (out && mat->model->facets != ASPI_FACETS_REFRACT))
-        return (wi.x + wo.x) * R(0.0);
+        return nothing;
     seen = area(&mat->ndf, v);
     /* facets level on average let out 1/(1 + hidden part) of what meets them once */
     first = aspi_abs(wi.z) / seen;

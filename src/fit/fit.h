@@ -5,7 +5,7 @@
  *   box.c          parameters as numbers in [0, 1], and back
  *   problem.c      model over geometries, residuals, colours by non-negative least squares
  *   optimise.c     Levenberg-Marquardt over the box, reweighting, ends of ranges
- *   simplex.c      the last steps for absolute differences
+ *   simplex.c      the last steps for absolute differences, and distances between distributions
  *   starts.c       where the searches begin
  *   uncertainty.c  covariance at the optimum
  *   fit.c          the public call */
@@ -145,6 +145,18 @@ typedef struct aspi_search {
  * `rounds`: how often absolute differences are reweighted at most. ASP_ENOMEM, ASP_ECANCELLED. */
 asp_status aspi_polish(aspi_search *search, aspi_point *at, const int *free_axes, int rounds,
                        asp_error *err);
+/* A simplex goes down from a point whose loss is known, along some of the axes of a box. */
+typedef struct aspi_descent {
+    const aspi_axis *box;
+    const int *axis;                             /* those that are free, */
+    int    n, calls;                             /* how many, and evaluations for each of them at most */
+    double size, flat;                           /* of the first simplex, in b; relative spread to stop at */
+    void (*evaluate)(void *context, aspi_point *at);   /* sets the loss */
+    int  (*cancelled)(void *context);            /* NULL: never */
+    void  *context;
+} aspi_descent;
+typedef enum aspi_rest { ASPI_FLAT, ASPI_STEEP, ASPI_CANCELLED } aspi_rest;
+aspi_rest aspi_descend(const aspi_descent *how, aspi_point *at);
 /* Absolute differences to the end; `flat` says whether it came to rest. */
 asp_status aspi_simplex(aspi_search *search, aspi_point *at, const int *free_axes, int *flat,
                         asp_error *err);

@@ -372,67 +372,26 @@ static double loss_at_b(search *s, const double *b)
 
 static double loss_at_one(search *s, double b) { return loss_at_b(s, &b); }
 
-/* Nelder, Mead 1965, from a corner and n steps; the best corner comes back in b. */
+static void set_loss(void *context, aspi_point *at)
+{
+    at->loss = loss_at_b(context, at->b);
+}
+
+/* The simplex of simplex.c over the free shape numbers; the best place comes back in b. */
 static double simplex(search *s, double *b, double size)
 {
-    enum { N = ASP_SHAPE_NUMBERS };
-    double corner[N + 1][N], loss[N + 1], centre[N], probe[N], far[N];
-    int n = s->n;
-    for (int i = 0; i <= n; i++) {
-        memcpy(corner[i], b, sizeof corner[i]);
-        if (i) {
-            const aspi_axis *axis = &s->axis[s->index[i - 1]];
-            corner[i][i - 1] += b[i - 1] + size > axis->b_high ? -size : size;
-        }
-        loss[i] = loss_at_b(s, corner[i]);
+    static const int axis[ASP_SHAPE_NUMBERS] = { 0, 1, 2, 3, 4, 5, 6, 7 };
+    aspi_axis box[ASP_SHAPE_NUMBERS];
+    aspi_descent how = { box, axis, s->n, 250, size, 1e-12, set_loss, NULL, s };
+    aspi_point at = { .loss = 0 };
+    for (int i = 0; i < s->n; i++) {
+        box[i] = s->axis[s->index[i]];
+        at.b[i] = b[i];
     }
-    for (int round = 0; round < 120 * n; round++) {
-        int worst = 0, best = 0, second = 0;
-        for (int i = 1; i <= n; i++) {
-            worst = loss[i] > loss[worst] ? i : worst;
-            best = loss[i] < loss[best] ? i : best;
-        }
-        second = best;
-        for (int i = 0; i <= n; i++)
-            second = i != worst && loss[i] > loss[second] ? i : second;
-        if (loss[worst] - loss[best] <= 1e-12 * loss[best])
-            break;
-        for (int k = 0; k < n; k++) {
-            centre[k] = 0;
-            for (int i = 0; i <= n; i++)
-                centre[k] += i == worst ? 0 : corner[i][k] / n;
-            probe[k] = 2 * centre[k] - corner[worst][k];
-            far[k] = 3 * centre[k] - 2 * corner[worst][k];
-        }
-        double p = loss_at_b(s, probe);
-        if (p < loss[best]) {
-            double q = loss_at_b(s, far);
-            memcpy(corner[worst], q < p ? far : probe, sizeof far);
-            loss[worst] = fmin(p, q);
-        } else if (p < loss[second]) {
-            memcpy(corner[worst], probe, sizeof probe);
-            loss[worst] = p;
-        } else {
-            for (int k = 0; k < n; k++)
-                far[k] = 0.5 * (centre[k] + (p < loss[worst] ? probe[k] : corner[worst][k]));
-            double q = loss_at_b(s, far);
-            if (q < fmin(p, loss[worst])) {
-                memcpy(corner[worst], far, sizeof far);
-                loss[worst] = q;
-            } else {
-                for (int i = 0; i <= n; i++) {
-                    for (int k = 0; k < n; k++)
-                        corner[i][k] = 0.5 * (corner[i][k] + corner[best][k]);
-                    loss[i] = loss_at_b(s, corner[i]);
-                }
-            }
-        }
-    }
-    int best = 0;
-    for (int i = 1; i <= n; i++)
-        best = loss[i] < loss[best] ? i : best;
-    memcpy(b, corner[best], sizeof corner[best]);
-    return loss[best];
+    set_loss(s, &at);
+    aspi_descend(&how, &at);
+    memcpy(b, at.b, (size_t)s->n * sizeof *b);
+    return at.loss;
 }
 
 /* The ends of a range are places too: 1/gamma = 0 is one. */

@@ -330,6 +330,14 @@ static double visible_integral(const aspi_trial *t, asp_vec3 w)
     return sum;
 }
 
+double aspi_visible_integral(const aspi_trial *t, asp_vec3 w, double *doubt)
+{
+    double h, s;
+    aspi_standard_view(t->ndf, w, &h, &s);
+    *doubt = (h < 0 ? FROM_BELOW : 1) * stated_error(t);
+    return visible_integral(t, w);
+}
+
 void aspi_law_density_visible(aspi_trial *t)
 {
     size_t i;

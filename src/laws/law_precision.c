@@ -48,7 +48,7 @@ void aspi_law_nan(aspi_trial *t)
 #define V3 asp_vec3s
 #define CV3 asp_cvec3s
 #define VRGB asp_rgbs
-#define MATERIAL(t, kind, name) aspi_material((t)->ndf, kind, name)
+#define MATERIAL(t, kind, name) (*aspi_material(t, kind, name))
 #define MATERIAL_TYPE asp_material
 #define SAMPLE asp_bsdf_sample
 #define BITS_NAME "float64"
@@ -59,15 +59,10 @@ void aspi_law_nan(aspi_trial *t)
 #define V3 asp_vec3sf
 #define CV3 asp_cvec3sf
 #define VRGB asp_rgbsf
-#define MATERIAL(t, kind, name) narrowed_material((t)->ndf, kind, name)
+#define MATERIAL(t, kind, name) asp_material_narrow(aspi_material(t, kind, name))
 #define MATERIAL_TYPE asp_materialf
 #define SAMPLE asp_bsdf_samplef
 #define BITS_NAME "float32"
-static asp_materialf narrowed_material(const asp_ndf *ndf, int kind, const char **name)
-{
-    asp_material wide = aspi_material(ndf, kind, name);
-    return asp_material_narrow(&wide);
-}
 #endif
 
 /* ------------------------------------------------------------------ batch */
@@ -83,6 +78,8 @@ static asp_materialf narrowed_material(const asp_ndf *ndf, int kind, const char 
 #define nan_law ASP_NAME(nan)
 #define expect_finite ASP_NAME(expect_finite)
 #define finite_pair ASP_NAME(finite_pair)
+#define finite_walk ASP_NAME(finite_walk)
+#define walk_uniform ASP_NAME(walk_uniform)
 #define expect_nan ASP_NAME(expect_nan)
 #define vector ASP_NAME(vector)
 
@@ -198,7 +195,7 @@ static void batch_size(aspi_trial *t, const asp_shape *k, buffers *b, size_t n)
             check_scalar(t, name, n, i, s.z, b->c[i]);
         }
     }
-    for (kind = 0; kind < ASPI_MATERIALS + (n == 7 ? ASPI_MORE_MATERIALS : 0); kind++) {
+    for (kind = 0; kind < (n == 7 ? ASPI_ALL_MATERIALS : ASPI_MATERIALS); kind++) {
         const char *name;
         MATERIAL_TYPE mat = MATERIAL(t, kind, &name);
         for (q = 0; q < 2; q++) {
@@ -268,6 +265,18 @@ static void finite_pair(aspi_trial *t, const asp_shape *k, const MATERIAL_TYPE *
     expect_finite(t, "pdf", CALL(pdf)(mat, w, v), w, v);
 }
 
+static double walk_uniform(void *state) { return aspi_uniform((aspi_trial *)state); }
+
+static void finite_walk(aspi_trial *t, const MATERIAL_TYPE *mat, asp_v3 w, asp_v3 v)
+{
+    SAMPLE s = CALL(walk_sample)(mat, w, walk_uniform, t);
+    asp_c3 f = CALL(walk_eval_cos)(mat, w, v, walk_uniform, t);
+    expect_finite(t, "walk pdf", s.pdf, w, s.wo);
+    expect_finite(t, "walk weight", s.weight.r, w, s.wo);
+    expect_finite(t, "walk eval_cos", f.r, w, v);
+    expect_finite(t, "walk_pdf", CALL(walk_pdf)(mat, w, v), w, v);
+}
+
 static void finite(aspi_trial *t, const asp_shape *k)
 {
     static const double heights[12] = { 0, 1, -1, 1e-8, -1e-8, 1e-30, 1e-45, 1e-75, 1e-150, 1e-310,
@@ -293,11 +302,11 @@ static void finite(aspi_trial *t, const asp_shape *k)
         expect_finite(t, "lambda", w[i].z < (asp_real)(ASP_PRECISION == 64 ? 1e-300 : 1e-35)
                       && lambda > 0 ? 0 : lambda, w[i], w[i]);
     }
-    for (kind = 0; kind < ASPI_MATERIALS; kind++) {
+    for (kind = 0; kind < ASPI_ALL_MATERIALS; kind++) {
         const char *name;
         MATERIAL_TYPE mat = MATERIAL(t, kind, &name);
         for (i = 0; i < DIRECTIONS; i++)
-            for (j = 0; j < DIRECTIONS; j++)
+            for (j = 0; j < DIRECTIONS; j += kind == ASPI_ROUGH_DIFFUSE ? 11 : kind < ASPI_MATERIALS ? 1 : 5)
                 finite_pair(t, k, &mat, w[i], w[j], mat.mask);
         for (i = 0; i < DIRECTIONS; i++)
             for (a = 0; a < 6; a++)
@@ -305,7 +314,7 @@ static void finite(aspi_trial *t, const asp_shape *k)
                     SAMPLE s = CALL(sample)(&mat, w[i], (asp_real)ends[a], (asp_real)ends[b]);
                     double size = (double)s.wo.x * s.wo.x + (double)s.wo.y * s.wo.y
                                 + (double)s.wo.z * s.wo.z;
-                    if (w[i].z <= 0)
+                    if (w[i].z <= 0 && (kind < ASPI_ONE_SIDED || w[i].z == 0))
                         size = 1; /* outside the domain: no direction is promised */
                     expect_finite(t, "sample pdf", s.pdf, w[i], s.wo);
                     expect_finite(t, "sample weight.r", s.weight.r, w[i], s.wo);
@@ -315,6 +324,9 @@ static void finite(aspi_trial *t, const asp_shape *k)
                               BITS_NAME, name, (double)s.wo.x, (double)s.wo.y, (double)s.wo.z,
                               (double)w[i].x, (double)w[i].y, (double)w[i].z, ends[a], ends[b]);
                 }
+        if (kind == ASPI_MIRROR || kind == ASPI_FILM || kind == ASPI_ROUGH_DIFFUSE || kind == ASPI_DIELECTRIC)
+            for (i = 0; i < DIRECTIONS; i++)
+                finite_walk(t, &mat, w[i], w[(7 * i + 5) % DIRECTIONS]);
     }
     for (i = -1; i < DIRECTIONS; i++)
         for (a = 0; a < 6; a++)
@@ -366,7 +378,7 @@ static void nan_law(aspi_trial *t, const asp_shape *k)
         }
         if (i < 6)
             expect_nan(t, "pdf_visible", i, CALL(pdf_visible)(k, wi, wo));
-        for (kind = 0; kind < ASPI_MATERIALS; kind++) {
+        for (kind = 0; kind < ASPI_ALL_MATERIALS; kind++) {
             const char *name;
             MATERIAL_TYPE mat = MATERIAL(t, kind, &name);
             SAMPLE s;
@@ -379,10 +391,15 @@ static void nan_law(aspi_trial *t, const asp_shape *k)
                 s = CALL(sample)(&mat, wi, (asp_real)(i == 3 ? NAN : 0.3),
                                  (asp_real)(i == 4 ? NAN : 0.3));
                 /* a diffuse lobe's direction does not depend on wi; its pdf and weight do */
-                if (kind < ASPI_MATERIALS - 1 || i > 2)
+                if (kind < ASPI_MIXTURE || i > 2)
                     expect_nan(t, "sample wo", i, s.wo.x + s.wo.y + s.wo.z);
                 expect_nan(t, "sample pdf", i, s.pdf);
                 expect_nan(t, "sample weight", i, s.weight.r);
+            }
+            if (i < 3 && (kind == ASPI_MIRROR || kind == ASPI_ROUGH_DIFFUSE || kind == ASPI_DIELECTRIC)) {
+                expect_nan(t, "walk weight", i, CALL(walk_sample)(&mat, wi, walk_uniform, t).weight.r);
+                expect_nan(t, "walk eval_cos", i, CALL(walk_eval_cos)(&mat, wi, wo, walk_uniform, t).r);
+                expect_nan(t, "walk_pdf", i, CALL(walk_pdf)(&mat, wi, wo));
             }
         }
         if (i < 5) {
@@ -409,6 +426,8 @@ static void nan_law(aspi_trial *t, const asp_shape *k)
 #undef nan_law
 #undef expect_finite
 #undef finite_pair
+#undef finite_walk
+#undef walk_uniform
 #undef expect_nan
 #undef vector
 #undef COMPARE

@@ -20,7 +20,69 @@ typedef struct sampling {
     const asp_material *mat;   /* of directions; NULL: of normals */
     const aspi_view *view;     /* NULL: all normals */
     int horizon_only;          /* weights are compared, not counts */
+    double eta;                /* where light crosses: index of the other side over that of wi; else 0 */
+    int crossing, thin;        /* look at what crosses; a sheet */
 } sampling;
+
+/* As seen from the side of wi: turned by a point reflection, or for a sheet mirrored. */
+static asp_vec3 turned(const sampling *s, asp_vec3 w)
+{
+    double sign = s->eta > 0 && s->view->w.z < 0 ? -1 : 1, across = s->thin ? 1 : sign;
+    asp_vec3 out = { across * w.x, across * w.y, sign * w.z };
+    return out;
+}
+
+/* The facet that joins the view and wo, or a vertical one, which falls into the open cell, where it does
+ * not do what is looked at. */
+static asp_vec3 facet_of(const sampling *s, asp_vec3 wo)
+{
+    static const asp_vec3 none = { 1, 0, 0 };
+    asp_vec3 v = s->view->w, w = wo, m;
+    int across = 0;
+    double n = 1;
+    if (s->eta > 0) {
+        v = turned(s, v);
+        w = turned(s, w);
+        across = w.z < 0;
+        if (across != s->crossing)
+            return none;
+        w.z = s->thin ? fabs(w.z) : w.z;
+        n = across && !s->thin ? s->eta : 1;
+    }
+    m = aspi_unit(v.x + n * w.x, v.y + n * w.y, v.z + n * w.z);
+    if (!across || s->thin)
+        return m;
+    if (aspi_dot(v, m) < 0)
+        m.x = -m.x, m.y = -m.y, m.z = -m.z;
+    return aspi_dot(w, m) < 0 ? m : none;
+}
+
+/* Where the facet m sends the view's light, and the solid angle there per one of facets; 0: nowhere. */
+static double sent_by(const sampling *s, asp_vec3 m, asp_vec3 *wo)
+{
+    asp_vec3 v = s->eta > 0 ? turned(s, s->view->w) : s->view->w;
+    double c = aspi_dot(v, m), along = 2 * c, by = 1, solid = 4 * c;
+    if (c <= 0)
+        return 0;
+    if (s->crossing && !s->thin) {
+        double g2 = 1 - (1 - c * c) / (s->eta * s->eta), g = sqrt(fmax(g2, 0)), over = c - s->eta * g;
+        if (g2 <= 0)
+            return 0;
+        along = c / s->eta - g;
+        by = 1 / s->eta;
+        solid = over * over / (s->eta * s->eta * g);
+    }
+    wo->x = along * m.x - by * v.x;
+    wo->y = along * m.y - by * v.y;
+    wo->z = along * m.z - by * v.z;
+    if (s->eta > 0) {
+        if (s->crossing && !s->thin ? wo->z >= 0 : wo->z <= 0)
+            return 0;
+        wo->z = s->crossing && s->thin ? -wo->z : wo->z;
+        *wo = turned(s, *wo);
+    }
+    return solid;
+}
 
 /* ------------------------------------------------------------------ one sampler as a stream */
 
@@ -53,11 +115,11 @@ static void draw(aspi_trial *t, const sampling *s, size_t n, block *b)
     else {
         asp_sample_n(s->mat, n, wi, b->u1, b->u2, m, b->pdf, weight);
         for (i = 0; i < n; i++) { /* directions to the facets that sent them */
-            double x = b->wx[i] + b->mx[i], y = b->wy[i] + b->my[i], z = b->wz[i] + b->mz[i];
-            double size = sqrt(x * x + y * y + z * z);
-            b->mx[i] = x / size;
-            b->my[i] = y / size;
-            b->mz[i] = z / size;
+            asp_vec3 wo = { b->mx[i], b->my[i], b->mz[i] }, facet = facet_of(s, wo);
+            int lost = s->eta > 0 && b->pdf[i] <= 0;
+            b->mx[i] = lost ? 1 : facet.x;
+            b->my[i] = lost ? 0 : facet.y;
+            b->mz[i] = lost ? 0 : facet.z;
         }
     }
 }
@@ -66,7 +128,7 @@ static void draw(aspi_trial *t, const sampling *s, size_t n, block *b)
 static void stated(const void *context, asp_vec3 m, double *density, double *value)
 {
     const sampling *s = (const sampling *)context;
-    double c;
+    double solid;
     asp_vec3 wo, wi;
     *value = 0;
     if (!s->view) {
@@ -78,20 +140,17 @@ static void stated(const void *context, asp_vec3 m, double *density, double *val
         *density = asp_pdf_visible(s->ndf, wi, m);
         return;
     }
-    c = aspi_dot(wi, m);
+    solid = sent_by(s, m, &wo);
     *density = 0;
-    if (c <= 0)
+    if (solid <= 0)
         return;
-    wo.x = 2 * c * m.x - wi.x;
-    wo.y = 2 * c * m.y - wi.y;
-    wo.z = 2 * c * m.z - wi.z;
     if (s->horizon_only) {
         /* a point of the rule on a cell that the horizon cuts must not fall to either side of it
          * by rounding: eval is 0 there and continuous */
-        *value = 4 * c * asp_eval_cos(s->mat, wi, wo).r;
+        *value = solid * asp_eval_cos(s->mat, wi, wo).r;
         *density = *value;
     } else
-        *density = 4 * c * asp_pdf(s->mat, wi, wo);
+        *density = solid * asp_pdf(s->mat, wi, wo);
 }
 
 /* Azimuth of the view in the standard slope plane: the visible density ends on a line across it. */
@@ -118,7 +177,7 @@ static double test_stream(aspi_trial *t, const sampling *s, const char *name)
     aspi_histogram *h = (aspi_histogram *)malloc(sizeof *h);
     block *b = (block *)malloc(sizeof *b);
     double *radii = (double *)malloc(PILOT * sizeof *radii), p = 0, phi, largest = 0;
-    size_t done, i;
+    size_t done, i, known = 0;
     if (!h || !b || !radii) {
         t->no_memory = 1;
         goto out;
@@ -131,15 +190,18 @@ static double test_stream(aspi_trial *t, const sampling *s, const char *name)
             aspi_standard_polar(s->ndf, m, &radii[done + i], &phi);
             if (!(radii[done + i] == radii[done + i]))
                 radii[done + i] = INFINITY;
+            known += radii[done + i] <= farthest(s);
             largest = fmax(largest, b->red[i]);
         }
     }
-    /* seen from far below the mean plane next to nothing is sent back; eval is integrated to a share of 1 */
-    if (s->horizon_only && largest < LEAST_WEIGHT) {
+    /* seen from far below the mean plane next to nothing is sent back, eval is integrated to a share of 1; under
+     * total reflection too few cross to lay cells by */
+    if ((s->horizon_only && largest < LEAST_WEIGHT) || (s->eta > 0 && known < PILOT / 20)) {
         p = 1;
         goto out;
     }
-    aspi_histogram_edges(h, radii, PILOT, s->view ? standard_azimuth(s->ndf, s->view->w) : 0.1, farthest(s));
+    aspi_histogram_edges(h, radii, PILOT, s->view ? standard_azimuth(s->ndf, turned(s, s->view->w)) : 0.1,
+                         farthest(s));
     if (t->planar)
         aspi_histogram_blocks(h, &t->lattice);
     aspi_histogram_integrate(h, t, stated, s);
@@ -206,25 +268,24 @@ void aspi_law_sample_visible(aspi_trial *t)
     }
 }
 
-/* Mirror and mixture; the other materials share their samplers. The mixture's diffuse lobe becomes a
+/* Mirror and mixture, from everywhere. The mixture's diffuse lobe becomes a
  * thread in the standard slopes of a map that is much narrower one way than the other, too fine for
  * cells: there the mirror is tried alone. */
 static void each_material(aspi_trial *t, int weights)
 {
-    static const int kinds[2] = { 0, ASPI_MATERIALS - 1 };
+    static const int kinds[2] = { ASPI_MIRROR, ASPI_MIXTURE };
     asp_roughness five = asp_map_to_roughness(&t->ndf->map);
     size_t i, tests = 2 * t->view_count;
     int k, count = five.alpha_x < 50 * five.alpha_y ? 2 : 1;
     for (k = 0; k < count; k++)
         for (i = 0; i < t->view_count; i++) {
             const char *name;
-            asp_material mat = aspi_material(t->ndf, kinds[k], &name);
-            sampling s;
+            sampling s = { 0 };
             double p;
             if (!(asp_sigma(t->ndf, t->views[i].w) > 1e-150)) /* no facet to be seen */
                 continue;
             s.ndf = t->ndf;
-            s.mat = &mat;
+            s.mat = aspi_material(t, kinds[k], &name);
             s.view = &t->views[i];
             s.horizon_only = weights;
             p = test_stream(t, &s, s.view->name);
@@ -238,6 +299,50 @@ static void each_material(aspi_trial *t, int weights)
 void aspi_law_sample_bsdf(aspi_trial *t) { each_material(t, 0); }
 
 void aspi_law_weight_histogram(aspi_trial *t) { each_material(t, 1); }
+
+/* The other samplers, from one view each: a lobe and, where there is one, the light that crosses. Short runs take
+ * a third of the cases, which one the surface decides. */
+void aspi_law_sample_materials(aspi_trial *t)
+{
+    static const struct { int kind, below, crossing; } cases[] = {
+        { ASPI_PLASTIC, 0, 0 }, { ASPI_DIELECTRIC, 0, 1 }, { ASPI_DIELECTRIC, 1, 0 },
+        { ASPI_COMPENSATED, 0, 0 }, { ASPI_SHEET, 0, 0 }, { ASPI_DIELECTRIC, 1, 1 },
+        { ASPI_COMPENSATED_DIELECTRIC, 0, 0 }, { ASPI_COMPENSATED_DIELECTRIC, 0, 1 }, { ASPI_SHEET, 1, 1 },
+        { ASPI_COMPENSATED_DIELECTRIC, 1, 0 }, { ASPI_FILM, 0, 0 }, { ASPI_DIELECTRIC, 0, 0 }
+    };
+    enum { CASES = sizeof cases / sizeof *cases };
+    asp_roughness five = asp_map_to_roughness(&t->ndf->map);
+    int step = t->samples < 50000 ? 3 : 1, first = step > 1 ? (int)fmod(1e3 * fabs(log(t->scale * t->det)), 3) : 0;
+    for (int i = first; i < CASES; i += step)
+        for (int weights = 0; weights < 2; weights++) {
+            int kind = cases[i].kind, mixed = kind == ASPI_PLASTIC || kind == ASPI_COMPENSATED
+                                           || kind == ASPI_COMPENSATED_DIELECTRIC;
+            aspi_view view = t->views[(size_t)(5 * i + 1) % t->view_count];
+            sampling s = { 0 };
+            const char *name;
+            double p;
+            if (!(asp_sigma(t->ndf, view.w) > 1e-150) || (mixed && five.alpha_x >= 50 * five.alpha_y))
+                continue;
+            s.ndf = t->ndf;
+            s.mat = aspi_material(t, kind, &name);
+            s.view = &view;
+            s.horizon_only = weights;
+            s.thin = kind == ASPI_SHEET;
+            s.crossing = cases[i].crossing;
+            s.eta = kind < ASPI_ONE_SIDED ? 0 : cases[i].below && !s.thin ? 1 / s.mat->c.r : s.mat->c.r;
+            if (cases[i].below) {
+                view.w.z = -view.w.z;
+                view.w.x = s.thin ? view.w.x : -view.w.x;
+                view.w.y = s.thin ? view.w.y : -view.w.y;
+            }
+            p = test_stream(t, &s, name);
+            aspi_find(t, aspi_sidak(p, 2 * CASES), ALLOWED, "%s%s%s, %s, %s, p = %.3g of %zu samples", name,
+                      cases[i].below ? " from inside" : "", cases[i].crossing ? " across" : "", view.name,
+                      weights ? "weights" : "counts", p, t->samples);
+            if (aspi_tick(t, (double)(i + 1) / CASES))
+                return;
+        }
+}
 
 /* ------------------------------------------------------------------ continuity */
 

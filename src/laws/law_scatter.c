@@ -1,50 +1,78 @@
 /* law_scatter.c - laws of scattering over the distribution: a mirror under every masking, gold, and
- * a diffuse base under a coat; plastic, gold with its lost light, and Lambertian facets */
+ * a diffuse base under a coat; plastic, metals with lost light or a film, Lambertian facets, glass */
 #include "laws/laws.h"
 #include "bsdf/bsdf.h"
 
 #include <math.h>
 
-enum { MIRRORS = 5, MATERIALS = ASPI_MATERIALS + ASPI_MORE_MATERIALS };
-extern const asp_bsdf asp_bsdf_compensated;
+enum { MIRRORS = 5 };
+extern const asp_bsdf asp_bsdf_compensated, asp_bsdf_compensated_dielectric;
 static const int masks[MIRRORS] = { ASP_MASK_CORRELATED, ASP_MASK_UNCORRELATED, ASP_MASK_V_CAVITY,
                                     ASP_MASK_CORRELATED | ASP_MASK_WALL,
                                     ASP_MASK_UNCORRELATED | ASP_MASK_WALL };
-static const char *const names[MATERIALS] = { "mirror correlated", "mirror uncorrelated",
-                                              "mirror v_cavity", "mirror correlated+wall",
-                                              "mirror uncorrelated+wall", "conductor",
-                                              "lambert_specular", "plastic", "compensated",
-                                              "rough_diffuse" };
+static const char *const names[ASPI_ALL_MATERIALS] = {
+    "mirror correlated", "mirror uncorrelated", "mirror v_cavity", "mirror correlated+wall",
+    "mirror uncorrelated+wall", "conductor", "lambert_specular", "plastic", "compensated", "film", "eon",
+    "rough_diffuse", "dielectric", "sheet", "compensated_dielectric"
+};
 
-/* Trials of a kind: Lambertian facets are a quadrature for each f. */
-static int trials(int kind, int most) { return kind == MATERIALS - 1 ? most / 10 : most; }
-
-/* There is no maker of it: its record prepares a conductor. */
-static asp_material compensated(const asp_ndf *ndf, asp_rgb eta, asp_rgb k)
+/* Trials of a kind, more where more samples are asked for. Lambertian facets are a quadrature for each f. */
+static int trials(const aspi_trial *t, int kind, int most)
 {
-    asp_material mat = asp_conductor(ndf, eta, k, ASP_MASK_CORRELATED);
-    mat.model = &asp_bsdf_compensated;
-    mat.b.r = 0;
+    int more = (int)(t->samples / 100000 < 100 ? t->samples / 100000 : 100);
+    most *= more > 1 ? more : 1;
+    return kind == ASPI_ROUGH_DIFFUSE ? most / 10 : most;
+}
+
+/* There are no makers of these: their records prepare what others made. */
+static asp_material prepared(asp_material mat, const asp_bsdf *model, double form)
+{
+    mat.model = model;
+    mat.b.r = form;
     mat.model->prepare(&mat, NULL);
     return mat;
 }
 
-asp_material aspi_material(const asp_ndf *ndf, int kind, const char **name)
+static asp_material make(const asp_ndf *ndf, int kind)
 {
     static const asp_rgb eta = { 0.17, 0.39, 1.45 }, k = { 3.5, 2.4, 1.9 };
     static const asp_rgb diffuse = { 0.4, 0.2, 0.05 }, specular = { 1, 0.9, 0.8 };
-    *name = names[kind];
+    asp_material mat = asp_conductor(ndf, eta, k, ASP_MASK_CORRELATED);
     if (kind < MIRRORS)
         return asp_mirror(ndf, masks[kind]);
-    if (kind == MIRRORS)
-        return asp_conductor(ndf, eta, k, ASP_MASK_CORRELATED);
-    if (kind == MIRRORS + 2)
+    switch (kind) {
+    case ASPI_MIXTURE:
+        return asp_lambert_specular(ndf, diffuse, specular, 1.5, ASP_MASK_CORRELATED);
+    case ASPI_PLASTIC:
         return asp_plastic(ndf, diffuse, 1.5, ASP_MASK_CORRELATED);
-    if (kind == MIRRORS + 3)
-        return compensated(ndf, eta, k);
-    if (kind == MIRRORS + 4)
+    case ASPI_COMPENSATED:
+        return prepared(mat, &asp_bsdf_compensated, COMPENSATED_KULLA_CONTY);
+    case ASPI_FILM:
+        aspi_film_prepare(&mat, NULL, 1.6, 350);
+        return mat;
+    case ASPI_EON:
+        mat = asp_rough_diffuse(ndf, diffuse, ASP_MASK_CORRELATED);
+        return prepared(mat, mat.model, ROUGH_EON);
+    case ASPI_ROUGH_DIFFUSE:
         return asp_rough_diffuse(ndf, diffuse, ASP_MASK_CORRELATED);
-    return asp_lambert_specular(ndf, diffuse, specular, 1.5, ASP_MASK_CORRELATED);
+    case ASPI_DIELECTRIC:
+    case ASPI_SHEET:
+        return asp_dielectric(ndf, 1.5, kind == ASPI_SHEET, ASP_RADIANCE, ASP_MASK_CORRELATED);
+    case ASPI_COMPENSATED_DIELECTRIC:
+        mat = asp_dielectric(ndf, 1.5, 0, ASP_RADIANCE, ASP_MASK_CORRELATED);
+        return prepared(mat, &asp_bsdf_compensated_dielectric, COMPENSATED_KULLA_CONTY);
+    default:
+        return mat;
+    }
+}
+
+const asp_material *aspi_material(aspi_trial *t, int kind, const char **name)
+{
+    *name = names[kind];
+    if (!t->made[kind])
+        t->material[kind] = make(t->ndf, kind);
+    t->made[kind] = 1;
+    return &t->material[kind];
 }
 
 static asp_vec3 up(asp_vec3 w)
@@ -65,9 +93,9 @@ void aspi_law_reciprocity(aspi_trial *t)
 {
     int kind, i;
     const char *name;
-    for (kind = 0; kind < MATERIALS; kind++) {
-        asp_material mat = aspi_material(t->ndf, kind, &name);
-        for (i = 0; i < trials(kind, 300); i++) {
+    for (kind = 0; kind < ASPI_ALL_MATERIALS; kind++) {
+        const asp_material *mat = aspi_material(t, kind, &name);
+        for (i = 0; i < trials(t, kind, 300); i++) {
             asp_vec3 wi = up(aspi_random_direction(t)), wo = up(aspi_random_direction(t)), m;
             asp_rgb a, b;
             double steps;
@@ -78,8 +106,8 @@ void aspi_law_reciprocity(aspi_trial *t)
                 if (wo.z <= 0)
                     continue;
             }
-            a = asp_eval(&mat, wi, wo);
-            b = asp_eval(&mat, wo, wi);
+            a = asp_eval(mat, wi, wo);
+            b = asp_eval(mat, wo, wi);
             /* opposite directions: the cosine to the half vector is |wi + wo|/2, in steps of eps
              * over |wi + wo| */
             steps = aspi_dot(wi, wo) + 1;
@@ -99,13 +127,13 @@ void aspi_law_furnace(aspi_trial *t)
     const char *name;
     for (i = 0; i < t->view_count; i++)
         for (kind = 0; kind < MIRRORS; kind++) {
-            asp_material mat = aspi_material(t->ndf, kind, &name);
+            const asp_material *mat = aspi_material(t, kind, &name);
             double doubt, albedo;
             /* grooves are those of a level surface: on a skewed one they return up to twice what
              * came. Their kinks near the horizon are too fine for the cubature */
             if (kind == 2 && (t->skewed || t->views[i].w.z < 1e-4))
                 continue;
-            albedo = aspi_albedo(&mat, t->views[i].w, 1e-6, &doubt);
+            albedo = aspi_albedo(mat, t->views[i].w, 1e-6, &doubt);
             aspi_find(t, fmax(0, albedo - 1), 1e-7 + fmin(doubt, 1e-4)
                       + 2 * t->ndf->model->area_error, "%s, %s: albedo %.9g", name,
                       t->views[i].name, albedo);
@@ -120,13 +148,13 @@ void aspi_law_weight(aspi_trial *t)
 {
     int kind, i;
     const char *name;
-    for (kind = 0; kind < MATERIALS; kind++) {
-        asp_material mat = aspi_material(t->ndf, kind, &name);
-        for (i = 0; i < trials(kind, 400); i++) {
+    for (kind = 0; kind < ASPI_ONE_SIDED; kind++) {
+        const asp_material *mat = aspi_material(t, kind, &name);
+        for (i = 0; i < trials(t, kind, 400); i++) {
             const aspi_view *v = &t->views[(size_t)i % t->view_count];
-            asp_bsdf_sample s = asp_sample(&mat, v->w, aspi_uniform(t), aspi_uniform(t));
-            asp_rgb f = asp_eval_cos(&mat, v->w, s.wo), again = asp_eval(&mat, v->w, s.wo), w;
-            double pdf = asp_pdf(&mat, v->w, s.wo), size, apart, scale, steps;
+            asp_bsdf_sample s = asp_sample(mat, v->w, aspi_uniform(t), aspi_uniform(t));
+            asp_rgb f = asp_eval_cos(mat, v->w, s.wo), again = asp_eval(mat, v->w, s.wo), w;
+            double pdf = asp_pdf(mat, v->w, s.wo), size, apart, scale, steps;
             asp_vec3 h = aspi_unit(v->w.x + s.wo.x, v->w.y + s.wo.y, v->w.z + s.wo.z);
             double norm = s.wo.x * s.wo.x + s.wo.y * s.wo.y + s.wo.z * s.wo.z;
             if (!(asp_sigma(t->ndf, v->w) > 1e-150)) /* nothing can be seen from there */

@@ -14,6 +14,14 @@ typedef struct aspi_view {
 
 #define ASPI_VIEWS 12
 
+/* Kinds of materials: five mirrors, a conductor and a mixture; those that are slow to make; those that light
+ * crosses. */
+enum {
+    ASPI_MIRROR = 0, ASPI_MIXTURE = 6, ASPI_MATERIALS = 7,
+    ASPI_PLASTIC = 7, ASPI_COMPENSATED, ASPI_FILM, ASPI_EON, ASPI_ROUGH_DIFFUSE, ASPI_ONE_SIDED,
+    ASPI_DIELECTRIC = ASPI_ONE_SIDED, ASPI_SHEET, ASPI_COMPENSATED_DIELECTRIC, ASPI_ALL_MATERIALS
+};
+
 typedef struct aspi_trial {
     const asp_ndf *ndf;
     asp_ndff ndff;
@@ -34,6 +42,8 @@ typedef struct aspi_trial {
     double done, share;           /* progress made before this law, and what the law is worth */
     int cancelled;
     int no_memory;
+    int made[ASPI_ALL_MATERIALS];
+    asp_material material[ASPI_ALL_MATERIALS];
 } aspi_trial;
 
 /* A law: what it says, and the function that looks. `weight`: its share of the time. */
@@ -74,6 +84,10 @@ void aspi_law_sample_visible(aspi_trial *t);
 void aspi_law_sample_bsdf(aspi_trial *t);
 void aspi_law_weight_histogram(aspi_trial *t);
 void aspi_law_refraction(aspi_trial *t);
+void aspi_law_adjoint(aspi_trial *t);
+void aspi_law_limits(aspi_trial *t);
+void aspi_law_weak_furnace(aspi_trial *t);
+void aspi_law_sample_materials(aspi_trial *t);
 void aspi_law_no_boundary(aspi_trial *t);
 void aspi_law_walk(aspi_trial *t);
 void aspi_law_continuity(aspi_trial *t);
@@ -99,10 +113,8 @@ void aspi_standard_view(const asp_ndf *ndf, asp_vec3 w, double *height, double *
 /* Density of standard slopes times r^2, from D of the mapped surface. */
 double aspi_r2_density(const aspi_trial *t, double r, double phi);
 
-/* Seven materials over a distribution: five mirrors, a conductor, a mixture (law_scatter.c). */
-#define ASPI_MATERIALS 7
-#define ASPI_MORE_MATERIALS 3   /* kinds after those, slow to make or to evaluate */
-asp_material aspi_material(const asp_ndf *ndf, int kind, const char **name);
+/* The material of a kind over the distribution (law_scatter.c), made when it is first asked for. */
+const asp_material *aspi_material(aspi_trial *t, int kind, const char **name);
 
 /* ---- random numbers and statistics (statistics.c) */
 
@@ -161,6 +173,10 @@ double aspi_sigma_by_quadrature(const aspi_trial *t, double w, double s);
 
 /* sigma(w) by quadrature, with the height of w' raised a little. */
 double aspi_sigma_expected(const aspi_trial *t, asp_vec3 w, double raise);
+
+/* Integral of the visible normals' density over facets by quadrature, and the stated error of sigma there
+ * (law_masking.c). */
+double aspi_visible_integral(const aspi_trial *t, asp_vec3 w, double *doubt);
 
 /* ---- surfaces counted in cells (planar.c) */
 

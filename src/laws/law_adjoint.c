@@ -1,0 +1,58 @@
+/* law_adjoint.c - light that crosses a boundary: the way back, and importance against radiance
+ *
+ * With indices n_i, n_o of the sides of wi, wo radiance has f(wo, wi) n_i^2 = f(wi, wo) n_o^2, and importance from wi
+ * to wo is radiance from wo to wi (Veach 1997, sec. 5.2). On one side f is the same both ways. */
+#include "laws/laws.h"
+
+#include <math.h>
+
+/* Steps of rounding that a facet found from wi and wo carries: the half vector is what is left of two
+ * vectors of length 1 and n, and Fresnel's term takes the root of what is left of 1 next to total reflection. */
+static double steps_of(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double n)
+{
+    double k = wi.z * wo.z > 0 ? 1 : n;
+    double apart = hypot(hypot(wi.x + k * wo.x, wi.y + k * wo.y), wi.z + k * wo.z);
+    double mz = fmax(fabs(wi.z + k * wo.z) / apart, 1e-12);
+    double size = fabs(t->ndf->i00) + fabs(t->ndf->i01) + fabs(t->ndf->i10) + fabs(t->ndf->i11);
+    double slope = 1 / mz + hypot(t->ndf->map.tx, t->ndf->map.ty), dot = aspi_dot(wi, wo);
+    /* cosines of both to the facet */
+    double ci = fabs(1 + k * dot) / apart, co = fabs(k + dot) / apart, least = fmax(fmin(ci, co), 1e-12);
+    return 3e-15 * (1 + n) / apart / mz
+         * (1 / mz + size * slope / t->scale * 40 + 1 / fabs(wo.z) + 1 / fabs(wi.z) + 1 / (least * least));
+}
+
+static void compare(aspi_trial *t, const char *name, double found, double expected, double allowed, asp_vec3 wi,
+                    asp_vec3 wo, const char *what)
+{
+    aspi_find(t, fabs(found - expected) / fmax(fmax(found, expected), 1e-200), allowed,
+              "%s, wi (%.6g, %.6g, %.6g), wo (%.6g, %.6g, %.6g), %s: %.15g, %.15g", name, wi.x, wi.y, wi.z,
+              wo.x, wo.y, wo.z, what, found, expected);
+}
+
+void aspi_law_adjoint(aspi_trial *t)
+{
+    for (int kind = ASPI_ONE_SIDED; kind < ASPI_ALL_MATERIALS; kind++) {
+        const char *name;
+        const asp_material *rad = aspi_material(t, kind, &name);
+        double eta = kind == ASPI_SHEET ? 1 : rad->c.r;
+        asp_material imp = *rad;
+        imp.transport = ASP_IMPORTANCE;
+        for (int i = 0; i < 300; i++) {
+            asp_vec3 wi = aspi_random_direction(t), wo = aspi_random_direction(t);
+            double n, side, steps, there, back;
+            if (i % 3) /* a pair that shines */
+                wo = asp_sample_lobe(rad, wi, aspi_uniform(t), aspi_uniform(t), aspi_uniform(t)).wo;
+            n = wi.z < 0 ? 1 / eta : eta;
+            side = wi.z * wo.z < 0 ? n : 1;
+            steps = 1e-12 + 2 * steps_of(t, wi, wo, n);
+            if (!(steps < 1e-3) || wi.z == 0 || wo.z == 0)
+                continue;
+            there = asp_eval(rad, wi, wo).r;
+            back = asp_eval(rad, wo, wi).r;
+            if (fmax(there, back) < 1e-200)
+                continue;
+            compare(t, name, back, there * side * side, steps, wi, wo, "f(wo, wi) and f(wi, wo) n_o^2/n_i^2");
+            compare(t, name, asp_eval(&imp, wi, wo).r, back, steps, wi, wo, "importance and radiance back");
+        }
+    }
+}
