@@ -183,7 +183,6 @@ typedef char prepared_tables_fit[PREPARED_END <= ASP_TABLE_NUMBERS ? 1 : -1];
 asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
 {
     prepared_source s;
-    prepared_panels rings;
     double mu[PREPARED_VIEW_CELLS + 1], t0;
     s.k = out;
     s.f = f;
@@ -193,10 +192,9 @@ asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
         return asp_fail(err, ASP_EINVAL, "density", "it is not positive anywhere");
     s.low = s.at - 20;
     s.high = aspi_max_64(s.at, 0) + 8;
-    aspi_prepared_rings(&s, &rings);
-    s.log_mass += aspi_log_64(rings.below[0] + rings.beyond[0]);
+    s.log_mass += aspi_log_64(2 * ASP_PI * aspi_prepared_moment(&s, 2));
     out->table[PREPARED_LOG_MASS] = s.log_mass;
-    t0 = 2 * aspi_prepared_edge_on(&s);
+    t0 = 4 * aspi_prepared_moment(&s, 3);
     out->table[PREPARED_SCALE] = t0;
     out->table[PREPARED_SCALE2] = t0 * t0;
     aspi_prepared_normal_table(&s, out->table);

@@ -68,21 +68,20 @@ static double prepared_log_area(const prepared_source *s, const prepared_kernels
     return base + aspi_log_64(2 * kernel->step * m2 * mu * sum);
 }
 
-/* The same at mu = 0: 2 P22 rho^3 per log rho. */
-double aspi_prepared_edge_on(const prepared_source *s)
+double aspi_prepared_moment(const prepared_source *s, int power)
 {
     const double step = AREA_STEP / prepared_finer(s);
     double sum = 0, term = 0, last = 0, t;
     for (t = s->low; t < 200; t += step) {
         last = term;
-        term = aspi_exp_64(aspi_prepared_log(s, aspi_exp_64(2 * t)) + 3 * t);
+        term = aspi_exp_64(aspi_prepared_log(s, aspi_exp_64(2 * t)) + power * t);
         sum += term;
         if (term < last && (term < 1e-17 * sum || t > s->high))
             break;
     }
     if (term > 0 && term < last)
         sum += term * term / (last - term);
-    return 2 * step * sum;
+    return step * sum;
 }
 
 /* ------------------------------------------------------------------ polynomials by pieces */

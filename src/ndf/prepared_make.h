@@ -53,8 +53,8 @@ double aspi_prepared_ring(const void *context, double t);
 /* The panels of all slopes. */
 void aspi_prepared_rings(const prepared_source *s, prepared_panels *out);
 
-/* J(0), half the unit of slopes. */
-double aspi_prepared_edge_on(const prepared_source *s);
+/* Integral of P22 r^power over log r: the mass is 2 pi times that of power 2, J(0) twice that of 3. */
+double aspi_prepared_moment(const prepared_source *s, int power);
 /* AREA and DEEP. */
 void aspi_prepared_area_tables(const prepared_source *s, double t0, double *table);
 /* r^2 P22 of slopes sqrt(mu^2 + eta^2) seen from below by a view of slope mu, eta (eta - mu atan(eta/mu)) P22 of
