@@ -64,6 +64,12 @@ struct asp_bsdf {
                    asp_bsdf_sample *out);
     void (*samplef)(const asp_materialf *mat, const asp_vec3f *wi, float u1, float u2, float u3,
                     asp_bsdf_samplef *out);
+    /* A block of the same, whose outputs may be inputs; u holds u1, u2, u3. Returns 0 where it has to be done
+     * one by one; may be NULL. */
+    int (*sample_n)(const asp_material *mat, size_t n, const double *const wi[3], const double *const u[3],
+                    double *const wo[3], double *pdf, double *const weight[3]);
+    int (*sample_nf)(const asp_materialf *mat, size_t n, const float *const wi[3], const float *const u[3],
+                     float *const wo[3], float *pdf, float *const weight[3]);
 };
 
 /* Does light cross it? Then it is there from both sides. */
@@ -103,10 +109,14 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
     { "transport", "radiance (default) or importance: whether what crosses is scaled by 1/eta^2" }
 
 /* The formulas of a record, in the order of struct asp_bsdf. */
-#define ASPI_BSDF_FACETS NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL
+#define ASPI_BSDF_FACETS NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, \
+    NULL, NULL
 #define ASPI_BSDF_OPS(n) n##_value_1_64, n##_value_1_32, n##_value_n_64, n##_value_n_32, \
-    n##_share_1_64, n##_share_1_32, n##_share_n_64, n##_share_n_32, NULL, NULL, NULL, NULL, NULL, NULL
-#define ASPI_BSDF_OWN(n) NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, \
+    n##_share_1_64, n##_share_1_32, n##_share_n_64, n##_share_n_32, NULL, NULL, NULL, NULL, NULL, NULL, \
+    NULL, NULL
+#define ASPI_BSDF_CALLS(n) NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, \
     n##_eval_64, n##_eval_32, n##_pdf_64, n##_pdf_32, n##_sample_64, n##_sample_32
+#define ASPI_BSDF_OWN(n) ASPI_BSDF_CALLS(n), NULL, NULL
+#define ASPI_BSDF_OWN_BLOCKS(n) ASPI_BSDF_CALLS(n), n##_sample_n_64, n##_sample_n_32
 
 #endif

@@ -10,6 +10,7 @@
 #define bsdf_eval ASP_NDF_NAME(_eval)
 #define bsdf_pdf ASP_NDF_NAME(_pdf)
 #define bsdf_sample ASP_NDF_NAME(_sample)
+#define bsdf_sample_n ASP_NDF_NAME(_sample_n)
 #endif
 #undef asp_mat
 #undef asp_sampled

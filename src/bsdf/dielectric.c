@@ -41,7 +41,7 @@ static const aspi_bsdf_key dielectric_keys[] = { ASPI_DIELECTRIC_KEYS, { NULL, N
 
 ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
     "dielectric", "Rough dielectric", "Walter et al. 2007, eqs. 20-21", dielectric_keys, 0,
-    ASPI_FACETS_REFRACT, dielectric_parse, NULL, ASPI_BSDF_OWN(dielectric)
+    ASPI_FACETS_REFRACT, dielectric_parse, NULL, ASPI_BSDF_OWN_BLOCKS(dielectric)
 };
 
 #else
@@ -316,6 +316,76 @@ ASP_CLONES_SINGLE static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, 
            ? sample_weight(shape, &k, weight, crossing_scale(mat, &k), thin, 0)
            : sample_weight(shape, &k, weight, crossing_scale(mat, &k), thin, mat->mask);
     out->weight.r = out->weight.g = out->weight.b = weight;
+}
+/* Reflected and refracted alike, for half spaces with the default masking. Outputs may be inputs: they are
+ * written last. */
+ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real *const wi[3],
+                                    const asp_real *const u[3], asp_real *const wo[3], asp_real *pdf,
+                                    asp_real *const weight[3])
+{
+    const asp_shape *shape = &mat->ndf;
+    const asp_real *wx = wi[0], *wy = wi[1], *wz = wi[2], *u3 = u[2];
+    asp_real *px = wo[0], *py = wo[1], *pz = wo[2], *r = weight[0], *g = weight[1], *b = weight[2];
+    asp_real vx[ASP_BLOCK], vy[ASP_BLOCK], vz[ASP_BLOCK], mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK];
+    asp_real ox[ASP_BLOCK], oy[ASP_BLOCK], oz[ASP_BLOCK], bx[ASP_BLOCK], by[ASP_BLOCK], bz[ASP_BLOCK];
+    asp_real si[ASP_BLOCK], so[ASP_BLOCK], D[ASP_BLOCK], c[ASP_BLOCK], F[ASP_BLOCK];
+    asp_real index = mat->c.r, inverse = R(1.0) / mat->c.r;
+    asp_real denser = mat->transport == ASP_IMPORTANCE ? R(0.0) : R(1.0);
+    size_t i;
+    if (mat->a.r > R(0.0) || index == R(1.0) || mat->mask != 0 || !n)
+        return 0;
+    for (i = 0; i < n; i++) {
+        asp_v3 v = turned(aspi_vector(wx[i], wy[i], wz[i]), wz[i] < R(0.0) ? R(-1.0) : R(1.0), 0);
+        vx[i] = v.x;
+        vy[i] = v.y;
+        vz[i] = v.z;
+    }
+    OPS(shape).visible_n(shape, n, vx, vy, vz, u[0], u[1], mx, my, mz);
+    OPS(shape).sigma_n(shape, n, R(1.0), vx, vy, vz, si);
+    OPS(shape).density_n(shape, n, mx, my, mz, D);
+    for (i = 0; i < n; i++) {
+        asp_real eta = index_of(wz[i], index, inverse, 0), sign;
+        case_of k = bend(aspi_vector(vx[i], vy[i], vz[i]), aspi_vector(mx[i], my[i], mz[i]), eta, u3[i], 0);
+        sign = k.refracts ? R(-1.0) : R(1.0);
+        c[i] = k.c;
+        F[i] = k.F;
+        ox[i] = k.wo.x;
+        oy[i] = k.wo.y;
+        oz[i] = k.wo.z;
+        bx[i] = sign * k.wo.x;
+        by[i] = sign * k.wo.y;
+        bz[i] = sign * k.wo.z;
+    }
+    OPS(shape).sigma_n(shape, n, R(1.0), bx, by, bz, so);
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        asp_real nothing = (wx[i] + wy[i] + wz[i]) * R(0.0), sign = wz[i] < R(0.0) ? R(-1.0) : R(1.0), p, w;
+        case_of k;
+        int stop, lost;
+        k.wi = aspi_vector(vx[i], vy[i], vz[i]);
+        k.m = aspi_vector(mx[i], my[i], mz[i]);
+        k.wo = aspi_vector(ox[i], oy[i], oz[i]);
+        k.eta = index_of(wz[i], index, inverse, 0);
+        k.c = c[i];
+        k.F = F[i];
+        k.wm = aspi_dot(k.wo, k.m);
+        k.refracts = u3[i] >= F[i];
+        k.sigma_i = si[i];
+        p = facet_density(&k, D[i], 0);
+        w = sample_weight(shape, &k, so[i], denser > R(0.0) ? R(1.0) / (k.eta * k.eta) : R(1.0), 0, 0);
+        stop = (k.wi.z <= R(0.0)) | (nothing != R(0.0));
+        lost = stop | (bz[i] <= R(0.0));
+        p = aspi_select(lost, nothing, p);
+        w = aspi_select(lost | (p <= R(0.0)), nothing, w);
+        px[i] = aspi_select(stop, -wx[i], sign * k.wo.x);
+        py[i] = aspi_select(stop, -wy[i], sign * k.wo.y);
+        pz[i] = aspi_select(stop, -wz[i], sign * k.wo.z);
+        pdf[i] = p;
+        r[i] = w;
+        g[i] = w;
+        b[i] = w;
+    }
+    return 1;
 }
 #undef OPS
 #undef OPS_64

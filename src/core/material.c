@@ -14,9 +14,9 @@
 #else
 #include "core/blocks.h"
 #include "bsdf/bsdf_number.h"
-#include "core/rng.h"
 #include "bsdf/facet_fresnel.h"
 #include "bsdf/reflection.h"
+#include "core/own_batch.h"
 
 #ifndef ASPI_MATERIAL_NAMES
 #define ASPI_MATERIAL_NAMES
@@ -37,7 +37,6 @@
 #else
 #define ASPI_APART
 #endif
-#define third_number ASP_NAME(third_number)
 #endif
 
 /* The model's value from the Fresnel term at c. */
@@ -193,13 +192,6 @@ static asp_sampled sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_
     return out;
 }
 
-/* A number that knows nothing of u1 and u2 but is made of their bits. */
-ASP_FN asp_real third_number(asp_real u1, asp_real u2)
-{
-    uint64_t a = aspi_to_bits(u1), b = aspi_to_bits(u2);
-    return ASP_NAME(aspi_unit)(aspi_random_at(aspi_mix64(a), b));
-}
-
 /* The compiler must not take these in: a copy of what was just written in parts would stall. */
 ASPI_APART static asp_sampled sample_own(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
 {
@@ -225,7 +217,7 @@ asp_sampled ASPI_CALL(asp_sample_lobe)(const asp_mat *mat, asp_v3 wi, asp_real u
 asp_sampled ASPI_CALL(asp_sample)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
 {
     if (mat->model->ASPI_CALL(sample))
-        return sample_own(mat, wi, u1, u2, third_number(u1, u2));
+        return sample_own(mat, wi, u1, u2, aspi_third_number(u1, u2));
     return mat->model->ASPI_CALL(value) ? sample_facets(mat, wi, u1, u2) : sample_pure(mat, wi, u1, u2);
 }
 #endif

@@ -1,5 +1,5 @@
-/* own_batch.c - batches of models that bring calls of their own: one by one, so that element i is what
- * the single call gives. Lobes that are chosen by lot do not vectorise. */
+/* own_batch.c - batches of models that bring calls of their own: one by one where they bring no blocks, so
+ * that element i is what the single call gives. */
 #ifndef ASP_PRECISION
 #include "bsdf/bsdf.h"
 
@@ -44,8 +44,19 @@ void ASP_NAME(aspi_own_pdf_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3
 void ASP_NAME(aspi_own_sample_n)(const asp_mat *mat, size_t n, asp_cv3s wi, const asp_real *u1,
                          const asp_real *u2, asp_v3s wo, asp_real *pdf, asp_c3s weight)
 {
-    size_t i;
-    for (i = 0; i < n; i++) {
+    asp_real u3[ASP_BLOCK];
+    size_t i = 0, k, size;
+    if (mat->model->ASPI_CALL(sample_n))
+        ASPI_FOR_BLOCKS(i, size, n) {
+            const asp_real *const in[3] = { wi.x + i, wi.y + i, wi.z + i }, *const u[3] = { u1 + i, u2 + i, u3 };
+            asp_real *const out[3] = { wo.x + i, wo.y + i, wo.z + i };
+            asp_real *const by[3] = { weight.r + i, weight.g + i, weight.b + i };
+            for (k = 0; k < size; k++)
+                u3[k] = aspi_third_number(u1[i + k], u2[i + k]);
+            if (!mat->model->ASPI_CALL(sample_n)(mat, size, in, u, out, pdf + i, by))
+                break;
+        }
+    for (; i < n; i++) {
         asp_sampled s = ASPI_CALL(asp_sample)(mat, aspi_at(wi.x, wi.y, wi.z, i), u1[i], u2[i]);
         wo.x[i] = s.wo.x;
         wo.y[i] = s.wo.y;

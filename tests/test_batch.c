@@ -1,0 +1,139 @@
+/* test_batch.c - asp_sample_n gives element by element what asp_sample gives, in place too
+ *
+ * Read three times: this head, then the body in each precision. */
+#ifndef REAL
+#include "asperity.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { N = 3001 };                     /* blocks and a rest */
+
+static int passed, failed;
+static uint64_t state = 1;
+
+/* splitmix64, Steele et al. 2014 */
+static double uniform(void)
+{
+    uint64_t z = (state += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+#define REAL double
+#define NAME(x) x
+#define TEST(x) x##_64
+#define MATERIAL asp_material
+#define SAMPLE asp_bsdf_sample
+#define VEC3 asp_vec3
+#define IN asp_cvec3s
+#define OUT asp_vec3s
+#define RGB asp_rgbs
+#define BATCH asp_sample_n
+#include "test_batch.c"
+#define REAL float
+#define NAME(x) x##f
+#define TEST(x) x##_32
+#define MATERIAL asp_materialf
+#define SAMPLE asp_bsdf_samplef
+#define VEC3 asp_vec3f
+#define IN asp_cvec3sf
+#define OUT asp_vec3sf
+#define RGB asp_rgbsf
+#define BATCH asp_sample_nf
+#include "test_batch.c"
+
+int main(void)
+{
+    static const char *const specs[] = {
+        "dielectric:eta=1.5,ndf=(ggx:alpha_x=0.3,alpha_y=0.1)",
+        "dielectric:eta=0.7,transport=importance,ndf=(beckmann:alpha=0.8)",
+        "dielectric:eta=1.33,ndf=(student_t:alpha=0.5,gamma=2,mean_x=0.3)",
+        "dielectric:eta=1.5,thin=1,ndf=(ggx)",
+        "conductor:metal=Au,ndf=(ggx:alpha_x=0.7,alpha_y=0.2,mean_x=0.5)",
+        "conductor:eta=1.5/1.4/1.2,k=0,ndf=(ggx:alpha=0.5)",
+        "conductor:f0=0.9,tint=0.8,ndf=(student_t:alpha=0.5)",
+        "lambert_specular:diffuse=0.2/0.1/0.05,specular=1,eta=1.5,ndf=(ggx:alpha=0.2)",
+        "compensated:metal=Au,ndf=(beckmann:alpha=0.8)"
+    };
+    size_t i;
+    for (i = 0; i < sizeof specs / sizeof *specs; i++) {
+        asp_material mat;
+        asp_materialf narrow;
+        asp_error err;
+        if (asp_material_parse(NULL, specs[i], &mat, &err)) {
+            printf("FAILED: %s: %s\n", specs[i], err.reason);
+            failed++;
+            continue;
+        }
+        narrow = asp_material_narrow(&mat);
+        check_64(specs[i], &mat);
+        check_32(specs[i], &narrow);
+    }
+    printf("%d passed, %d failed\n", passed, failed);
+    return failed != 0;
+}
+
+#else
+/* Directions all around, among them vertical, grazing and bad ones. */
+static void TEST(fill)(REAL wi[3][N], REAL u[2][N])
+{
+    int i, k;
+    for (i = 0; i < N; i++) {
+        double z = 2 * uniform() - 1, phi = 6.283185307179586 * uniform(), r = sqrt(1 - z * z);
+        wi[0][i] = (REAL)(i % 97 ? r * cos(phi) : 0);
+        wi[1][i] = (REAL)(i % 97 ? r * sin(phi) : 0);
+        wi[2][i] = (REAL)(i % 97 ? i % 101 ? i % 107 ? z : 1e-6 * z : 0 : i & 1 ? 1 : -1);
+        if (i % 103 == 0)
+            wi[0][i] = NAN;
+        for (k = 0; k < 2; k++)
+            u[k][i] = (REAL)(i % (109 + k) ? 0.99999 * uniform() : 0);
+    }
+}
+
+static int TEST(same)(REAL a, REAL b) { return (a != a && b != b) || !memcmp(&a, &b, sizeof a); }
+
+static void TEST(check)(const char *spec, const MATERIAL *mat)
+{
+    static REAL wi[3][N], u[2][N], o[7][N];
+    IN in = { wi[0], wi[1], wi[2] };
+    OUT out = { o[0], o[1], o[2] }, back = { wi[0], wi[1], wi[2] };
+    RGB rgb = { o[4], o[5], o[6] }, weight = { u[0], u[1], o[6] };
+    int i, k, differ = 0, moved = 0, lit = 0;
+    TEST(fill)(wi, u);
+    BATCH(mat, N, in, u[0], u[1], out, o[3], rgb);
+    for (i = 0; i < N; i++) {
+        SAMPLE s = NAME(asp_sample)(mat, (VEC3){ wi[0][i], wi[1][i], wi[2][i] }, u[0][i], u[1][i]);
+        REAL one[7] = { s.wo.x, s.wo.y, s.wo.z, s.pdf, s.weight.r, s.weight.g, s.weight.b };
+        for (k = 0; k < 7; k++)
+            differ += !TEST(same)(one[k], o[k][i]);
+        lit += s.weight.r > 0;
+    }
+    BATCH(mat, N, in, u[0], u[1], back, o[3], weight);
+    for (i = 0; i < N; i++) {
+        for (k = 0; k < 3; k++)
+            moved += !TEST(same)(wi[k][i], o[k][i]);
+        moved += !TEST(same)(u[0][i], o[4][i]) || !TEST(same)(u[1][i], o[5][i]);
+    }
+    printf("%s  float%d %s: %d samples with light; %d numbers differ, %d in place\n",
+           differ || moved || lit < N / 4 ? "FAILED" : "ok    ", (int)(8 * sizeof(REAL)), spec, lit, differ, moved);
+    if (differ || moved || lit < N / 4)
+        failed++;
+    else
+        passed++;
+}
+
+#undef REAL
+#undef NAME
+#undef TEST
+#undef MATERIAL
+#undef SAMPLE
+#undef VEC3
+#undef IN
+#undef OUT
+#undef RGB
+#undef BATCH
+#endif
