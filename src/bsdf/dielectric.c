@@ -61,8 +61,8 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define beta ASP_NDF_NAME(_beta)
 #define joint_reflected ASP_NDF_NAME(_joint_reflected)
 #define facet_density ASP_NDF_NAME(_facet_density)
-#define density_of ASP_NDF_NAME(_density_of)
-#define sigma_of ASP_NDF_NAME(_sigma_of)
+#define surface_density ASP_NDF_NAME(_surface_density)
+#define surface_sigma ASP_NDF_NAME(_surface_sigma)
 #define index_of ASP_NDF_NAME(_index_of)
 #define bend ASP_NDF_NAME(_bend)
 #define sample_weight ASP_NDF_NAME(_sample_weight)
@@ -80,9 +80,9 @@ typedef struct case_of {
 #define OPS_64(k) ((k)->model->f64)
 #define OPS_32(k) ((k)->model->f32)
 
-ASP_FN asp_real density_of(const asp_shape *k, asp_v3 m) { return OPS(k).density(k, m.x, m.y, m.z); }
+ASP_FN asp_real surface_density(const asp_shape *k, asp_v3 m) { return OPS(k).density(k, m.x, m.y, m.z); }
 
-ASP_FN asp_real sigma_of(const asp_shape *k, asp_v3 w) { return OPS(k).sigma(k, w.x, w.y, w.z); }
+ASP_FN asp_real surface_sigma(const asp_shape *k, asp_v3 w) { return OPS(k).sigma(k, w.x, w.y, w.z); }
 
 /* As seen from the side of `sign`: by a point reflection, or for a sheet by a mirror. */
 ASP_FN asp_v3 turned(asp_v3 w, asp_real sign, int thin)
@@ -116,7 +116,7 @@ ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
         k.F = R(2.0) * k.F / (R(1.0) + k.F);
     k.dark = !(k.c > R(0.0) && k.m.z > ASP_FLAT && k.wi.z > R(0.0) && k.wo.z != R(0.0))
           || mat->c.r == R(1.0);
-    k.sigma_i = sigma_of(&mat->ndf, k.wi);
+    k.sigma_i = surface_sigma(&mat->ndf, k.wi);
     return k;
 }
 
@@ -199,14 +199,14 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
     asp_real nothing = k.c * R(0.0), f = nothing, D, co = aspi_abs(wo->z);
     if (!k.dark) {
         int thin = mat->a.r > R(0.0);
-        D = density_of(&mat->ndf, k.m);
+        D = surface_density(&mat->ndf, k.m);
         if (!k.refracts || thin) {
-            asp_real so = sigma_of(&mat->ndf, k.wo);
+            asp_real so = surface_sigma(&mat->ndf, k.wo);
             asp_real share = k.refracts ? R(1.0) - k.F : k.F;
             f = share * aspi_finite(R(0.25) * D * joint_reflected(&mat->ndf, &k, so, mat->mask));
             f = cosine ? f * co : f;
         } else if (k.wm < R(0.0)) {
-            asp_real so = sigma_of(&mat->ndf, turned(k.wo, R(-1.0), 0));
+            asp_real so = surface_sigma(&mat->ndf, turned(k.wo, R(-1.0), 0));
             asp_real G2 = refracted_masking(&mat->ndf, &k, so, mat->mask);
             f = (R(1.0) - k.F) * aspi_finite(k.c * D * aspi_bent_density(k.c, k.wm, k.eta) * G2 / k.wi.z)
               * crossing_scale(mat, &k);
@@ -233,7 +233,7 @@ static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
     int thin = mat->a.r > R(0.0);
     if (k.dark || (k.refracts && !thin && k.wm >= R(0.0)))
         return k.c * R(0.0);
-    return facet_density(&k, density_of(&mat->ndf, k.m), thin);
+    return facet_density(&k, surface_density(&mat->ndf, k.m), thin);
 }
 
 /* The index of the other side over that of the side of `sign`. */
@@ -304,14 +304,14 @@ ASP_CLONES_SINGLE static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, 
     out->wo = turned(wo, sign, thin);
     if (k.refracts ? wo.z >= R(0.0) : wo.z <= R(0.0))
         return; /* into the surface again: single scattering loses this light */
-    k.sigma_i = sigma_of(shape, v);
+    k.sigma_i = surface_sigma(shape, v);
     if (thin)
         k.wo.z = aspi_abs(wo.z); /* as make_case does */
-    out->pdf = facet_density(&k, density_of(shape, k.m), thin);
+    out->pdf = facet_density(&k, surface_density(shape, k.m), thin);
     if (out->pdf <= R(0.0))
         return;
     seen = turned(k.wo, k.refracts && !thin ? R(-1.0) : R(1.0), 0);
-    weight = sigma_of(shape, seen);
+    weight = surface_sigma(shape, seen);
     weight = mat->mask == 0 /* a constant spares the default the others' arithmetic */
            ? sample_weight(shape, &k, weight, crossing_scale(mat, &k), thin, 0)
            : sample_weight(shape, &k, weight, crossing_scale(mat, &k), thin, mat->mask);

@@ -34,14 +34,14 @@
 #define leave_by ASP_NAME(leave_by)
 #define other_side ASP_NAME(other_side)
 #define visible_normal ASP_NAME(visible_normal)
-#define density_of ASP_NAME(walk_density)
+#define met_density ASP_NAME(met_density)
 #define draw_eval ASP_NAME(walk_draw_eval)
 #define draw_sample ASP_NAME(walk_draw_sample)
 #define uniform ASP_NAME(uniform)
 #define negate ASP_NAME(negate)
 #define walls_seen ASP_NAME(walls_seen)
 #define area ASP_NAME(area)
-#define exponent ASP_NAME(exponent)
+#define ratio_exponent ASP_NAME(ratio_exponent)
 #define facing ASP_NAME(facing)
 #define fly ASP_NAME(fly)
 #define fly_surely ASP_NAME(fly_surely)
@@ -119,13 +119,13 @@ ASP_FN asp_real area(const asp_shape *k, asp_v3 v)
     return aspi_max(a, v.z);
 }
 
-ASP_FN asp_real density_of(const asp_shape *k, asp_v3 m)
+ASP_FN asp_real met_density(const asp_shape *k, asp_v3 m)
 {
     return ASPI_OPS(k).density(k, m.x, m.y, m.z);
 }
 
 /* over/under as an exponent. */
-ASP_FN asp_real exponent(asp_real over, asp_real under)
+ASP_FN asp_real ratio_exponent(asp_real over, asp_real under)
 {
     return aspi_min(over / aspi_max(under, ASP_SMALLEST), R(1e6));
 }
@@ -139,7 +139,7 @@ ASP_FN asp_v3 facing(asp_v3 d, int inside) { return inside ? d : negate(d); }
 /* Flies to the next facet; 0 where there is none and the ray is out. */
 ASP_FN int fly(walker *r, asp_real seen)
 {
-    asp_real p = aspi_log(R(1.0) - uniform(r)) * exponent(aspi_abs(r->d.z), seen);
+    asp_real p = aspi_log(R(1.0) - uniform(r)) * ratio_exponent(aspi_abs(r->d.z), seen);
     int deeper = r->inside ? r->d.z > R(0.0) : r->d.z < R(0.0);
     if (deeper) {
         r->l = aspi_max(r->l + p, R(-69.0));
@@ -164,7 +164,7 @@ ASP_FN asp_real fly_surely(walker *r, asp_real seen)
     }
     if (!(seen > ASP_SMALLEST))
         return R(0.0);
-    rate = exponent(seen, aspi_abs(r->d.z));
+    rate = ratio_exponent(seen, aspi_abs(r->d.z));
     meets = -aspi_expm1(rate * r->l);
     r->l = aspi_min(r->l - aspi_log1p(-meets * uniform(r)) / rate, R(0.0));
     return meets;
@@ -183,7 +183,7 @@ ASP_FN way_out leave_by(const asp_shape *k, asp_v3 w)
 /* Probability that a ray from q on its side meets nothing more; wo.z is not 0. */
 ASP_FN asp_real leaves(const way_out *to, asp_real l)
 {
-    return aspi_exp(l * exponent(to->area, to->height));
+    return aspi_exp(l * ratio_exponent(to->area, to->height));
 }
 
 ASP_FN asp_v3 wall_normal(const asp_shape *k)
@@ -252,7 +252,7 @@ ASP_FN void scatter(walker *r, asp_v3 m)
 ASP_FN asp_real facet_phase(const asp_shape *k, asp_v3 v, asp_v3 m, asp_real seen)
 {
     asp_real c = aspi_dot(v, m);
-    return c <= R(0.0) ? R(0.0) : c * density_of(k, m) / seen;
+    return c <= R(0.0) ? R(0.0) : c * met_density(k, m) / seen;
 }
 
 /* Density of the direction w (of travel, on the same side) after one reflection by facets that face v,
@@ -262,7 +262,7 @@ ASP_FN asp_real by_reflection(const asp_shape *k, asp_v3 v, asp_v3 w, int inside
 {
     asp_v3 m = aspi_half_vector(v, facing(w, !inside));
     *c = aspi_dot(v, m);
-    return *c <= R(0.0) || m.z <= R(0.0) ? R(0.0) : R(0.25) * density_of(k, m) / seen;
+    return *c <= R(0.0) || m.z <= R(0.0) ? R(0.0) : R(0.25) * met_density(k, m) / seen;
 }
 
 /* The same after refraction to the other side; eta as seen from v. From inside everything is turned
