@@ -53,7 +53,7 @@ static asp_status abc_prepare(asp_ndf *out, asp_error *err)
 
 static const asp_param abc_params[] = {
     { "alpha", 1e-4, 0, 1e6, 20, "sharpness: 0 is uniform, 1/alpha the squared width" },
-    { "gamma", 0, 0, 1e4, 1.75, "tails: 0.5 heavy, 1.75 like GGX, large like exp(-k (1 - cos))" }
+    { "gamma", 0, 0, 1000, 1.75, "tails: 0.5 heavy, 1.75 like GGX, large like exp(-k (1 - cos))" }
 };
 #undef ASP_PRECISION
 
