@@ -1,7 +1,7 @@
 /* cuda_kernels.cu - the kernels' text as CUDA, compiled by tests/test_cuda.sh without a toolkit
  *
- * A toolkit's headers would give the keywords and the device's square root and memcpy; here are the
- * few lines that are needed. cuda_kernels.list holds a row KERNEL(name) per standard surface. */
+ * A toolkit's headers would give the keywords and the device's square root, signs and memcpy; here are
+ * the few lines that are needed. cuda_kernels.list holds a row KERNEL(name) per standard surface. */
 #include <math.h>
 #include <string.h>
 
@@ -11,6 +11,9 @@
 
 static __device__ inline float sqrtf(float x) { return __nvvm_sqrt_rn_f(x); }
 static __device__ inline double sqrt(double x) { return __nvvm_sqrt_rn_d(x); }
+static __device__ inline float fabsf(float x) { return __builtin_fabsf(x); }
+static __device__ inline double fabs(double x) { return __builtin_fabs(x); }
+static __device__ inline float copysignf(float x, float y) { return __builtin_copysignf(x, y); }
 static __device__ inline void *memcpy(void *to, const void *from, size_t n)
 {
     return __builtin_memcpy(to, from, n);

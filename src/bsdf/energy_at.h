@@ -24,8 +24,7 @@
 ASP_FN asp_real aspi_energy_row(const asp_real *e, int rows, asp_real x)
 {
     asp_real weight[4];
-    int i = (int)x;
-    i = i < 1 ? 1 : i;
+    int i = (int)aspi_select(x > R(1.0), x, R(1.0));             /* a NaN too, and stays one by the weights */
     i = i > rows - 3 ? rows - 3 : i;
     aspi_cubic(x - R(i), weight);
     e += i - 1;
@@ -54,10 +53,10 @@ ASP_FN asp_real aspi_energy_at(const asp_mat *mat, const asp_real *energy, asp_v
     } else {
         asp_real turn = aspi_atan(w.y, w.x) * R(0.5 / ASP_PI) * energy[ENERGY_TURNS], y, weight[4];
         int j, k;
-        turn = turn - R((int)turn);
+        turn = turn - R((int)aspi_select(turn == turn, turn, R(0.0)));
         turn = turn < R(0.0) ? turn + R(1.0) : turn;
         y = turn * R(columns);
-        j = (int)y;
+        j = (int)aspi_select(y == y, y, R(0.0));
         aspi_cubic(y - R(j), weight);
         E = R(0.0);
         for (k = 0; k < 4; k++)

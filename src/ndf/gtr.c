@@ -108,8 +108,9 @@ ASP_FN asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
     asp_real far = t[GTR_UNIT] * aspi_log1p(v * t[GTR_HIGH]);
     /* for Y > 60 no u leads near the other end */
     asp_real rest = steep ? t[GTR_WHOLE] - l : far;
-    asp_real a = aspi_sqrt(aspi_max(aspi_expm1(l) * t[GTR_INV_KAPPA], R(0.0)));
-    asp_real b = aspi_sqrt(aspi_max(-aspi_expm1(-rest) * t[GTR_LESS], R(0.0)));
+    /* 0 + keeps a zero positive: WASM's maximum tells -0 from 0 */
+    asp_real a = aspi_sqrt(R(0.0) + aspi_max(aspi_expm1(l) * t[GTR_INV_KAPPA], R(0.0)));
+    asp_real b = aspi_sqrt(R(0.0) + aspi_max(-aspi_expm1(-rest) * t[GTR_LESS], R(0.0)));
     asp_v2 phi = aspi_sincos2pi(u2);
     asp_real s = flip ? b : a;
     asp_v3 m;

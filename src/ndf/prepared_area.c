@@ -130,17 +130,23 @@ static void prepared_look(const prepared_source *s, const prepared_kernels *kern
 /* Piece i of a table: the polynomial through the values (Newton), in powers of y - center. */
 static void prepared_piece_put(const double *y, const double *value, double center, double *table, int i)
 {
-    double d[TERMS], c[TERMS] = { 0 };
+    double d[TERMS], c[TERMS] = { 0 }, next[TERMS];
     int j, k;
     for (j = 0; j < TERMS; j++)
         d[j] = value[j];
-    for (k = 1; k < TERMS; k++)
-        for (j = TERMS - 1; j >= k; j--)
-            d[j] = (d[j] - d[j - 1]) / (y[j] - y[j - k]);
+    /* from row to row, not in place: clang 14 turns that into wrong vectors for WASM */
+    for (k = 1; k < TERMS; k++) {
+        for (j = k; j < TERMS; j++)
+            next[j] = (d[j] - d[j - 1]) / (y[j] - y[j - k]);
+        for (j = k; j < TERMS; j++)
+            d[j] = next[j];
+    }
     for (j = TERMS - 1; j >= 0; j--) {
-        for (k = TERMS - 1; k > 0; k--)
-            c[k] = c[k - 1] - (y[j] - center) * c[k];
-        c[0] = d[j] - (y[j] - center) * c[0];
+        next[0] = d[j] - (y[j] - center) * c[0];
+        for (k = 1; k < TERMS; k++)
+            next[k] = c[k - 1] - (y[j] - center) * c[k];
+        for (k = 0; k < TERMS; k++)
+            c[k] = next[k];
     }
     table[i] = center;
     for (k = 0; k < TERMS; k++)
