@@ -84,7 +84,11 @@
 #undef ASP_PRECISION
 #include "ndf/prepared_area.c"
 #undef ASP_PRECISION
+#include "ndf/prepared_panels.c"
+#undef ASP_PRECISION
 #include "ndf/prepared_rows.c"
+#undef ASP_PRECISION
+#include "ndf/prepared_sight.c"
 #undef ASP_PRECISION
 #include "ndf/prepared_views.c"
 #undef ASP_PRECISION

@@ -7,11 +7,12 @@
 
 #include <math.h>
 
-static double known_log_density(const asp_ndf *k, double r2)
+static void known_log_density(const asp_ndf *k, size_t n, const double *r2, double *out)
 {
     double inv = k->shape[0];
     /* times 7: the machinery has to find the mass */
-    return log(7.0) + (inv > 0 ? -(1 / inv + 1) * log1p(r2 * inv) : -r2);
+    for (size_t i = 0; i < n; i++)
+        out[i] = log(7.0) + (inv > 0 ? -(1 / inv + 1) * log1p(r2[i] * inv) : -r2[i]);
 }
 
 static asp_status known_prepare(asp_ndf *out, asp_error *err)

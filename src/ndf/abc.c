@@ -37,11 +37,15 @@ static double abc_mass(double alpha, double gamma)
 }
 
 /* 1 - cos = r^2/(h (h + 1)), h = sqrt(1 + r^2); P22 = D cos^4. */
-static double abc_log_density(const asp_ndf *k, double r2)
+ASP_CLONES static void abc_log_density(const asp_ndf *k, size_t n, const double *ASP_RESTRICT r2,
+                                       double *ASP_RESTRICT out)
 {
-    double h = sqrt(1 + r2);
-    return k->table[0] - k->shape[ABC_GAMMA] * aspi_log1p_64(k->shape[ABC_ALPHA] * (r2 / (h * (h + 1))))
-         - 4 * aspi_log_64(h);
+    const double alpha = k->shape[ABC_ALPHA], gamma = k->shape[ABC_GAMMA], most = k->table[0];
+    size_t i;
+    for (i = 0; i < n; i++) {
+        double h = sqrt(1 + r2[i]);
+        out[i] = most - gamma * aspi_log1p_64(alpha * (r2[i] / (h * (h + 1)))) - 4 * aspi_log_64(h);
+    }
 }
 
 static asp_status abc_prepare(asp_ndf *out, asp_error *err)

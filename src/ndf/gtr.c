@@ -21,7 +21,27 @@
 enum { GTR_R2, GTR_Z2, GTR_ONE_R2, GTR_ONE_Z2, GTR_MAX, GTR_INV_KAPPA, GTR_UNIT, GTR_WHOLE, GTR_LOW, GTR_HIGH,
        GTR_LESS, GTR_FLIP, GTR_STEEP };
 
-static aspi_log_density gtr_log_density;
+static const asp_param gtr_params[] = {
+    { "alpha", 1e-3, 0, 4, 0.3, "roughness; 1 the sphere" },
+    { "gamma", 0, 1, 1e4, 1.5, "tails: 1 Berry, 2 GGX" }
+};
+
+#define ASP_NDF gtr
+#define ASP_PRECISION 64
+#include "gtr.c"
+#undef ASP_PRECISION
+#define ASP_PRECISION 32
+#include "gtr.c"
+#undef ASP_PRECISION
+
+/* P22 = D cos^4. */
+ASP_CLONES static void gtr_log_density(const asp_ndf *k, size_t n, const double *ASP_RESTRICT r2,
+                                       double *ASP_RESTRICT out)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        out[i] = -gtr_exponent_64(k, r2[i], 1) - 2 * aspi_log1p_64(r2[i]);
+}
 
 static asp_status gtr_prepare(asp_ndf *out, asp_error *err)
 {
@@ -46,25 +66,6 @@ static asp_status gtr_prepare(asp_ndf *out, asp_error *err)
     t[GTR_LESS] = -1 / aspi_expm1_64(-L);
     t[GTR_FLIP] = rough;
     return aspi_prepared_make(out, gtr_log_density, err);
-}
-
-static const asp_param gtr_params[] = {
-    { "alpha", 1e-3, 0, 4, 0.3, "roughness; 1 the sphere" },
-    { "gamma", 0, 1, 1e4, 1.5, "tails: 1 Berry, 2 GGX" }
-};
-
-#define ASP_NDF gtr
-#define ASP_PRECISION 64
-#include "gtr.c"
-#undef ASP_PRECISION
-#define ASP_PRECISION 32
-#include "gtr.c"
-#undef ASP_PRECISION
-
-/* P22 = D cos^4. */
-static double gtr_log_density(const asp_ndf *k, double r2)
-{
-    return -gtr_exponent_64(k, r2, 1) - 2 * aspi_log1p_64(r2);
 }
 
 ASP_RECORD asp_model asp_model_gtr = {

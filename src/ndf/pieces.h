@@ -45,7 +45,6 @@ ASP_FN int aspi_piece(int first, asp_real q)
 {
     int i = (int)(aspi_to_bits(q) >> (ASP_PRECISION == 64 ? 51 : 22)) - first;
     i = i < 0 ? 0 : i;
-    i = i < 0 ? 0 : i;
     return i > ASP_PIECES - 1 ? ASP_PIECES - 1 : i;
 }
 

@@ -7,9 +7,19 @@
 #define ASP_PRECISION 64
 #include "asperity/elementary.h"
 
+void aspi_prepared_logs(const prepared_source *s, size_t n, const double *r2, double *out)
+{
+    size_t i;
+    s->f(s->k, n, r2, out);
+    for (i = 0; i < n; i++)
+        out[i] -= s->log_mass;
+}
+
 double aspi_prepared_log(const prepared_source *s, double r2)
 {
-    return s->f(s->k, r2) - s->log_mass;
+    double out;
+    aspi_prepared_logs(s, 1, &r2, &out);
+    return out;
 }
 
 /* That there, or of the largest ring, if it is farther out: it may be a ring with hardly a slope within. */
@@ -53,124 +63,89 @@ double aspi_prepared_end_slope(const double *y, int step)
             - 3.0 * y[4 * step]) / 12;
 }
 
-/* ------------------------------------------------------------------ radial mass
- *
- * Panels in the logarithm of a radius, short where the integrand falls steeply, each by Gauss's rule
- * of 4 nodes. */
-
-static const double gauss_node[2] = { 0.43056815579702629, 0.16999052179242813 };  /* from the middle */
-static const double gauss_weight[2] = { 0.17392742256872693, 0.32607257743127307 };
-
-static double prepared_panel(prepared_integrand *g, const void *context, double t, double h)
-{
-    double sum = 0;
-    int j;
-    for (j = 0; j < 2; j++)
-        sum += gauss_weight[j] * (g(context, t + h * (0.5 - gauss_node[j]))
-                                  + g(context, t + h * (0.5 + gauss_node[j])));
-    return h * sum;
-}
-
-
-void aspi_prepared_integrate(prepared_integrand *g, const void *context, double low, double power,
-                             double high, double longest, double least, prepared_panels *out)
-{
-    double t = low, value = g(context, t), sum = 0, h = longest, rest;
-    int i;
-    for (i = 0; i < PREPARED_PANELS && t < high; i++) {
-        double next, ratio;
-        for (;;) {
-            next = g(context, t + h);
-            ratio = next / value;
-            if ((ratio > 0.15 && (ratio < 60 || value < 1e-12 * next)) || h < 1e-3 || !(value > 0))
-                break;
-            h *= 0.5;
-        }
-        out->edge[i] = t;
-        out->value[i] = value;
-        out->mass[i] = prepared_panel(g, context, t, h);
-        sum += out->mass[i];
-        t += h;
-        value = next;
-        if (ratio > 0.4)
-            h = aspi_min_64(2 * h, longest);
-        if (next < least * sum && ratio < 0.999) {
-            i++;
-            break;
-        }
-    }
-    out->count = i;
-    out->edge[i] = t;
-    out->value[i] = value;
-    /* the power that the last panel follows */
-    rest = 0;
-    if (i > 0 && value > 0 && value < out->value[i - 1])
-        rest = value * (t - out->edge[i - 1]) / aspi_log_64(out->value[i - 1] / value);
-    out->beyond[i] = rest;
-    while (i-- > 0)
-        out->beyond[i] = out->beyond[i + 1] + out->mass[i];
-    out->below[0] = out->value[0] / power;
-    for (i = 0; i < out->count; i++)
-        out->below[i + 1] = out->below[i] + out->mass[i];
-}
-
-/* -log of a share beyond, from the mass below or beyond. */
-static double prepared_share_rho(const prepared_panels *p, double below, double beyond)
-{
-    double total = p->below[0] + p->beyond[0];
-    return below < 0.5 * total ? -aspi_log1p_64(-below / total) : -aspi_log_64(beyond / total);
-}
-
-static double prepared_edge_rho(const prepared_panels *p, int i)
-{
-    return prepared_share_rho(p, p->below[i], p->beyond[i]);
-}
-
-/* Hermite's cubic over log rho, whose slope is known (d rho/dt = value/beyond), then a step of Newton's with
- * the integral up to there. */
-double aspi_prepared_radius(const prepared_panels *p, prepared_integrand *g, const void *context,
-                            double rho, int *panel)
-{
-    double r0, r1, x, h, a, b, d, t, mass;
-    int i = *panel, n = p->count;
-    while (i < n - 1 && prepared_edge_rho(p, i + 1) < rho)
-        i++;
-    *panel = i;
-    r0 = prepared_edge_rho(p, i);
-    r1 = prepared_edge_rho(p, i + 1);
-    if (rho >= r1)                            /* beyond the last edge: a power */
-        return p->edge[n] + (rho - r1) * p->beyond[n] / p->value[n];
-    h = aspi_log_64(r1 / r0);
-    x = aspi_log_64(rho / r0) / h;
-    d = p->edge[i + 1] - p->edge[i];
-    a = h * r0 * p->beyond[i] / p->value[i] - d;
-    b = d - h * r1 * p->beyond[i + 1] / p->value[i + 1];
-    t = p->edge[i] + x * d + x * (1 - x) * (a * (1 - x) + b * x);
-    mass = prepared_panel(g, context, p->edge[i], t - p->edge[i]);
-    r1 = prepared_share_rho(p, p->below[i] + mass, p->beyond[i] - mass);
-    return t + aspi_log_64(rho / r1) * r1 * (p->beyond[i] - mass) / g(context, t);
-}
-
 /* ------------------------------------------------------------------ the whole */
 
-double aspi_prepared_ring(const void *context, double t)
+#define MAKE_BLOCK 256
+
+ASP_CLONES static void prepared_squares(size_t n, const double *ASP_RESTRICT t, double *ASP_RESTRICT r2)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        r2[i] = aspi_exp_64(2 * t[i]);
+}
+
+/* r^power P22 from log P22, r = e^t. */
+ASP_CLONES static void prepared_powers(int power, size_t n, const double *ASP_RESTRICT t,
+                                       const double *ASP_RESTRICT log_density, double *ASP_RESTRICT out)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        out[i] = aspi_exp_64(log_density[i] + power * t[i]);
+}
+
+void aspi_prepared_along(const prepared_source *s, size_t n, const double *t, double *out)
+{
+    double r2[MAKE_BLOCK];
+    size_t from, count;
+    for (from = 0; from < n; from += count) {
+        count = n - from < MAKE_BLOCK ? n - from : MAKE_BLOCK;
+        prepared_squares(count, t + from, r2);
+        aspi_prepared_logs(s, count, r2, out + from);
+    }
+}
+
+void aspi_prepared_ring(const void *context, size_t n, const double *t, double *out)
 {
     const prepared_source *s = (const prepared_source *)context;
-    return 2 * ASP_PI * aspi_exp_64(aspi_prepared_log(s, aspi_exp_64(2 * t)) + 2 * t);
+    double log_density[MAKE_BLOCK];
+    size_t from, count, i;
+    for (from = 0; from < n; from += count) {
+        count = n - from < MAKE_BLOCK ? n - from : MAKE_BLOCK;
+        aspi_prepared_along(s, count, t + from, log_density);
+        prepared_powers(2, count, t + from, log_density, out + from);
+        for (i = from; i < from + count; i++)
+            out[i] *= 2 * ASP_PI;
+    }
 }
 
 /* Where the mass lies: log r of the largest ring, from a coarse scan; returns log of that ring. */
+#define SCAN_FIRST (-70)         /* halves of t */
+#define SCAN_LAST 80
 static double prepared_scan(const prepared_source *s, double *at)
 {
-    double best = -1e300, t;
-    for (t = -35; t <= 40; t += 0.5) {
-        double x = aspi_prepared_log(s, aspi_exp_64(2 * t)) + 2 * t;
-        if (x > best) {
-            best = x;
-            *at = t;
+    double t[SCAN_LAST - SCAN_FIRST + 1], found[SCAN_LAST - SCAN_FIRST + 1], best = -1e300;
+    int i, n = SCAN_LAST - SCAN_FIRST + 1;
+    for (i = 0; i < n; i++)
+        t[i] = 0.5 * (SCAN_FIRST + i);
+    aspi_prepared_along(s, (size_t)n, t, found);
+    for (i = 0; i < n; i++)
+        if (found[i] + 2 * t[i] > best) {
+            best = found[i] + 2 * t[i];
+            *at = t[i];
+        }
+    return best;
+}
+
+/* By the trapezoidal rule, on as a geometric series where it ends. */
+double aspi_prepared_moment(const prepared_source *s, int power)
+{
+    const double step = PREPARED_STEP / aspi_prepared_finer(s);
+    double t[MAKE_BLOCK], found[MAKE_BLOCK], terms[MAKE_BLOCK], sum = 0, term = 0, last = 0;
+    int i, j;
+    for (j = 0; s->low + step * j < 200; j += MAKE_BLOCK) {
+        for (i = 0; i < MAKE_BLOCK; i++)
+            t[i] = s->low + step * (i + j);
+        aspi_prepared_along(s, MAKE_BLOCK, t, found);
+        prepared_powers(power, MAKE_BLOCK, t, found, terms);
+        for (i = 0; i < MAKE_BLOCK; i++) {
+            last = term;
+            term = terms[i];
+            sum += term;
+            if (term < last && (term < 1e-17 * sum || t[i] > s->high))
+                return step * (sum + (term > 0 ? term * term / (last - term) : 0));
         }
     }
-    return best;
+    return step * sum;
 }
 
 void aspi_prepared_rings(const prepared_source *s, prepared_panels *out)

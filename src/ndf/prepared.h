@@ -1,9 +1,10 @@
 /* prepared.h - masking and sampling of any radially symmetric slope density, prepared numerically
  *
  * A distribution whose density is known but whose projected area and samplers have no closed form
- * gives the logarithm of its slope density once, as a C function in float64:
+ * gives the logarithm of its slope density once, as a loop in float64:
  *
- *     static double toy_log_density(const asp_ndf *k, double r2) { ... }
+ *     ASP_CLONES static void toy_log_density(const asp_ndf *k, size_t n, const double *ASP_RESTRICT r2,
+ *                                            double *ASP_RESTRICT out) { ... }
  *     static asp_status toy_prepare(asp_ndf *out, asp_error *err)
  *     {
  *         out->table[0] = ...;              (its own numbers: PREPARED_OWN of them)
@@ -34,8 +35,8 @@
 
 #define PREPARED_OWN 96          /* table[0 ... 95] belong to the distribution */
 
-/* Natural logarithm of the slope density P22 at r2 = slope^2, up to a constant. */
-typedef double aspi_log_density(const asp_ndf *k, double r2);
+/* Natural logarithms of the slope density P22 at r2 = slope^2, up to a constant. */
+typedef void aspi_log_density(const asp_ndf *k, size_t n, const double *r2, double *out);
 
 /* Fills out->table from PREPARED_OWN on; out->shape and the distribution's own numbers are read by f.
  * out->table[PREPARED_LOG_MASS] is the logarithm of the integral of e^f over all slopes: what a density

@@ -5,33 +5,49 @@
 #include "asperity/elementary.h"
 #include "ndf/pieces.h"
 
-/* The trapezoidal rule in log rho converges fast where the density is smooth; bent ones take a finer step. */
-#define AREA_STEP 0.2
-#define AREA_FINER 4
 #define AREA_FIRST (-80)
 #define AREA_LAST 400
-
-static int prepared_finer(const prepared_source *s) { return s->k->table[PREPARED_IS_BENT] > 0 ? AREA_FINER : 1; }
+#define AREA_BLOCK 64
 
 /* x^2 and x^2 (x - atan x) for x = e^(j h), j = first + i. */
 typedef struct prepared_kernels {
     int first, last;
-    double step, x2[AREA_FINER * (AREA_LAST - AREA_FIRST) + 1], weight[AREA_FINER * (AREA_LAST - AREA_FIRST) + 1];
+    double step;
+    double x2[PREPARED_FINER * (AREA_LAST - AREA_FIRST) + 1], weight[PREPARED_FINER * (AREA_LAST - AREA_FIRST) + 1];
 } prepared_kernels;
+
+ASP_CLONES static void area_kernel(double step, int first, size_t n, double *ASP_RESTRICT x2,
+                                   double *ASP_RESTRICT weight)
+{
+    int i, count = (int)n;
+    for (i = 0; i < count; i++) {
+        double x = aspi_exp_64(step * (first + i)), z = x * x;
+        x2[i] = z;
+        weight[i] = z * aspi_select_64(x < 0.1, x * aspi_prepared_near(z), x - aspi_atan_64(x, 1));
+    }
+}
 
 static void prepared_kernel(int finer, prepared_kernels *out)
 {
-    int j;
-    out->step = AREA_STEP / finer;
+    out->step = PREPARED_STEP / finer;
     out->first = finer * AREA_FIRST;
     out->last = finer * AREA_LAST;
-    for (j = out->first; j <= out->last; j++) {
-        double x = aspi_exp_64(out->step * j), z = x * x;
-        out->x2[j - out->first] = z;
-        out->weight[j - out->first] = z * (x < 0.1
-            ? x * z * (1.0 / 3 - z * (1.0 / 5 - z * (1.0 / 7 - z * (1.0 / 9 - z / 11))))
-            : x - aspi_atan_64(x, 1));
-    }
+    area_kernel(out->step, out->first, (size_t)(out->last - out->first) + 1, out->x2, out->weight);
+}
+
+ASP_CLONES static void area_slopes(double m2, size_t n, const double *ASP_RESTRICT x2, double *ASP_RESTRICT r2)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        r2[i] = m2 + m2 * x2[i];
+}
+
+ASP_CLONES static void area_terms(double base, size_t n, const double *ASP_RESTRICT log_density,
+                                  const double *ASP_RESTRICT weight, double *ASP_RESTRICT out)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        out[i] = aspi_exp_64(log_density[i] - base) * weight[i];
 }
 
 /* log J(mu): J = integral of 2 P22(mu^2 + rho^2) rho^2 (rho - mu atan(rho/mu)) d log rho by the trapezoidal rule,
@@ -41,47 +57,39 @@ static double prepared_log_area(const prepared_source *s, const prepared_kernels
 {
     double m2 = mu * mu, base = aspi_prepared_log(s, m2), sum = 0, term = 0, last = 0, first = 0;
     double t = aspi_log_64(mu), end = aspi_max_64(s->high, t + 7) + 4;
-    int j, start = (int)((s->low + 13 - t) / kernel->step);
+    double logs[AREA_BLOCK], terms[AREA_BLOCK], r2[AREA_BLOCK];
+    int j, start = (int)((s->low + 13 - t) / kernel->step), ended = 0;
     start = start < kernel->first ? kernel->first : start;
-    for (j = start; j <= kernel->last; j++) {
-        const int i = j - kernel->first;
-        double here = aspi_prepared_log(s, m2 + m2 * kernel->x2[i]);
-        if (here > base + 200) {              /* the peak lies farther out: count from here on */
-            double less = aspi_exp_64(base - here);
+    for (j = start; j <= kernel->last && !ended; ) {
+        const int from = j - kernel->first, left = kernel->last - j + 1, n = left < AREA_BLOCK ? left : AREA_BLOCK;
+        double most = base;
+        int i;
+        area_slopes(m2, (size_t)n, kernel->x2 + from, r2);
+        aspi_prepared_logs(s, (size_t)n, r2, logs);
+        for (i = 0; i < n; i++)
+            most = aspi_max_64(most, logs[i]);
+        if (most > base + 200) {              /* the peak lies farther out: count from here on */
+            double less = aspi_exp_64(base - most);
             sum *= less;
             term *= less;
             first *= less;
-            base = here;
+            base = most;
         }
-        last = term;
-        term = aspi_exp_64(here - base) * kernel->weight[i];
-        sum += term;
-        if (j == start)
-            first = term;
-        if (j == start + 1 && term > first)
-            sum += first * first / (term - first);
-        if (term < last && (term < 1e-10 * sum || t + kernel->step * j > end))
-            break;
+        area_terms(base, (size_t)n, logs, kernel->weight + from, terms);
+        for (i = 0; i < n && !ended; i++, j++) {
+            last = term;
+            term = terms[i];
+            sum += term;
+            if (j == start)
+                first = term;
+            if (j == start + 1 && term > first)
+                sum += first * first / (term - first);
+            ended = term < last && (term < 1e-10 * sum || t + kernel->step * j > end);
+        }
     }
     if (term > 0 && term < last)
         sum += term * term / (last - term);
     return base + aspi_log_64(2 * kernel->step * m2 * mu * sum);
-}
-
-double aspi_prepared_moment(const prepared_source *s, int power)
-{
-    const double step = AREA_STEP / prepared_finer(s);
-    double sum = 0, term = 0, last = 0, t;
-    for (t = s->low; t < 200; t += step) {
-        last = term;
-        term = aspi_exp_64(aspi_prepared_log(s, aspi_exp_64(2 * t)) + power * t);
-        sum += term;
-        if (term < last && (term < 1e-17 * sum || t > s->high))
-            break;
-    }
-    if (term > 0 && term < last)
-        sum += term * term / (last - term);
-    return step * sum;
 }
 
 /* ------------------------------------------------------------------ polynomials by pieces */
@@ -219,7 +227,7 @@ void aspi_prepared_area_tables(const prepared_source *s, double t0, double *out)
     prepared_piece p;
     double y = 1, next;
     int i;
-    prepared_kernel(prepared_finer(s), &kernel);
+    prepared_kernel(aspi_prepared_finer(s), &kernel);
     out[PREPARED_FALL] = prepared_fall(s, &kernel, t0);
     for (i = 0; i < last + both; i++, y = next) {
         next = 1 / (1 + prepared_half_octave(PREPARED_AREA_OCTAVE, i + 1));

@@ -1,11 +1,15 @@
 /* prepared_make.h - what the files that prepare a surface share
  *
- * prepared.c: splines, integrals over the radius, aspi_prepared_make; prepared_area.c: the tables of the
- * projected area; prepared_views.c: those of the samplers. */
+ * prepared.c: splines, aspi_prepared_make; prepared_panels.c: integrals over the radius; prepared_area.c: the
+ * tables of the projected area; prepared_sight.c: what is seen from below; prepared_rows.c, prepared_views.c:
+ * tables of the samplers. All that costs time goes over arrays. */
 #ifndef ASPI_PREPARED_MAKE_H
 #define ASPI_PREPARED_MAKE_H
 
 #include "ndf/prepared.h"
+
+#define ASP_PRECISION 64
+#include "asperity/number.h"
 
 /* The density under preparation. */
 typedef struct prepared_source {
@@ -16,7 +20,7 @@ typedef struct prepared_source {
     double low, high;            /* below which there is nothing, above which P22 is a power */
 } prepared_source;
 
-typedef double prepared_integrand(const void *context, double t);
+typedef void prepared_integrand(const void *context, size_t n, const double *t, double *out);
 
 #define PREPARED_PANELS 400
 
@@ -28,7 +32,10 @@ typedef struct prepared_panels {
     double below[PREPARED_PANELS + 1], beyond[PREPARED_PANELS + 1];   /* cumulated */
 } prepared_panels;
 
+void aspi_prepared_logs(const prepared_source *s, size_t n, const double *r2, double *out);
 double aspi_prepared_log(const prepared_source *s, double r2);
+/* The same at r = e^t. */
+void aspi_prepared_along(const prepared_source *s, size_t n, const double *t, double *out);
 /* About the largest logarithm from a radius on. */
 double aspi_prepared_base(const prepared_source *s, double radius);
 
@@ -44,14 +51,28 @@ double aspi_prepared_end_slope(const double *y, int step);
  * t = high; there the integrand goes on as a power of the radius. */
 void aspi_prepared_integrate(prepared_integrand *g, const void *context, double low, double power, double high,
                              double longest, double least, prepared_panels *out);
-/* log of the radius where -log of the share beyond is rho. `panel` is where to look from; it moves on with
- * growing rho. */
-double aspi_prepared_radius(const prepared_panels *p, prepared_integrand *g, const void *context, double rho,
-                            int *panel);
+/* log of the radii where -log of the share beyond is rho[0 ... n - 1], growing; n up to PREPARED_SHARES. */
+#define PREPARED_SHARES 96
+void aspi_prepared_radii(const prepared_panels *p, prepared_integrand *g, const void *context, int n,
+                         const double *rho, double *out);
 /* r^2 P22 2 pi: mass per unit of t = log r; `context` is the source. */
-double aspi_prepared_ring(const void *context, double t);
+void aspi_prepared_ring(const void *context, size_t n, const double *t, double *out);
 /* The panels of all slopes. */
 void aspi_prepared_rings(const prepared_source *s, prepared_panels *out);
+
+/* The trapezoidal rule in log rho converges fast where the density is smooth; bent ones take a finer step. */
+#define PREPARED_STEP 0.2
+#define PREPARED_FINER 4
+ASP_FN int aspi_prepared_finer(const prepared_source *s)
+{
+    return s->k->table[PREPARED_IS_BENT] > 0 ? PREPARED_FINER : 1;
+}
+
+/* 1 - atan(x)/x for z = x^2, |x| < 0.1. */
+ASP_FN double aspi_prepared_near(double z)
+{
+    return z * (1.0 / 3 - z * (1.0 / 5 - z * (1.0 / 7 - z * (1.0 / 9 - z / 11))));
+}
 
 /* Integral of P22 r^power over log r: the mass is 2 pi times that of power 2, J(0) twice that of 3. */
 double aspi_prepared_moment(const prepared_source *s, int power);
@@ -65,7 +86,7 @@ typedef struct prepared_sight {
 } prepared_sight;
 
 prepared_sight aspi_prepared_sight(const prepared_source *s, double mu);
-double aspi_prepared_seen(const void *sight, double t);
+void aspi_prepared_seen(const void *sight, size_t n, const double *t, double *out);
 void aspi_prepared_sight_panels(const prepared_sight *sight, double t0, double longest, double least,
                                prepared_panels *out);
 /* -log of the share beyond at t = log(within/beyond). */

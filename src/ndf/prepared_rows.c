@@ -9,20 +9,25 @@
 
 #define ROWS_NODES 72
 #define ROWS_SHARES 7
+#define ROWS_SCAN 400
 #define ROWS_FLOOR 1e-6          /* fourth differences that count for nothing; below, the nodes are not exact */
 
 /* The largest mu worth a row: beyond, what is seen is too little for float64, or P22 a power. */
 static double prepared_farthest(const prepared_source *s, double t0)
 {
     const double step = 0.25;
-    double t = aspi_log_64(t0), last = aspi_max_64(s->high + 1, t + 4), most = -1e300, far = t + 2, x, power;
-    power = aspi_prepared_log(s, aspi_exp_64(2 * last)) - aspi_prepared_log(s, aspi_exp_64(2 * (last - step)));
-    for (x = t; x <= last; x += step) {
-        double here = aspi_prepared_log(s, aspi_exp_64(2 * x));
-        double falls = aspi_prepared_log(s, aspi_exp_64(2 * (x + step))) - here - power;
-        most = aspi_max_64(most, here + 3 * x);
-        if (here + 3 * x > most - 740 && (falls > 0.003 * step || falls < -0.003 * step))
-            far = aspi_max_64(far, x);
+    double from = aspi_log_64(t0), last = aspi_max_64(s->high + 1, from + 4), most = -1e300, far = from + 2;
+    double t[ROWS_SCAN + 2], here[ROWS_SCAN + 2], power;
+    int n = (int)aspi_min_64((last - from) / step, ROWS_SCAN - 1) + 1, i;
+    for (i = 0; i <= n; i++)
+        t[i] = from + step * i;
+    aspi_prepared_along(s, (size_t)n + 1, t, here);
+    power = here[n] - here[n - 1];
+    for (i = 0; i < n; i++) {
+        double falls = here[i + 1] - here[i] - power;
+        most = aspi_max_64(most, here[i] + 3 * t[i]);
+        if (here[i] + 3 * t[i] > most - 740 && (falls > 0.003 * step || falls < -0.003 * step))
+            far = aspi_max_64(far, t[i]);
     }
     return aspi_exp_64(far);
 }
@@ -33,17 +38,19 @@ static void prepared_density(const prepared_source *s, double t0, double near, d
 {
     static const double share[ROWS_SHARES] = { -3, -1, 1, 3, 5, 7, 9 };
     static const double weight[ROWS_SHARES] = { 0.334, 0.551, 0.551, 0.334, 0.203, 0.123, 0.0742 };
-    double y[ROWS_NODES + 1][ROWS_SHARES], sum = 0;
+    double y[ROWS_NODES + 1][ROWS_SHARES], rho[ROWS_SHARES], sum = 0;
     prepared_panels panels;
     int i, j;
+    for (j = 0; j < ROWS_SHARES; j++)
+        rho[j] = aspi_prepared_rho(share[j]);
     for (i = 0; i <= ROWS_NODES; i++) {
         double mu = near * aspi_expm1_64(farthest * aspi_max_64(i, 0.01) / ROWS_NODES);
         prepared_sight sight = aspi_prepared_sight(s, mu);
-        int panel = 0;
+        double unit = 0.5 * aspi_log_64(mu * mu + t0 * t0);
         aspi_prepared_sight_panels(&sight, t0, 0.8, 1e-6, &panels);
+        aspi_prepared_radii(&panels, aspi_prepared_seen, &sight, ROWS_SHARES, rho, y[i]);
         for (j = 0; j < ROWS_SHARES; j++)
-            y[i][j] = aspi_prepared_radius(&panels, aspi_prepared_seen, &sight, aspi_prepared_rho(share[j]), &panel)
-                    - 0.5 * aspi_log_64(mu * mu + t0 * t0);
+            y[i][j] -= unit;
     }
     for (i = 2; i <= ROWS_NODES - 2; i++) {
         double size = 0;

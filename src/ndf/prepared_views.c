@@ -19,11 +19,11 @@ double aspi_prepared_rho(double t)
 /* log of the radius at n + 1 values of t from the first to the last, from panels. */
 static void prepared_radii(const prepared_panels *p, prepared_integrand *g, const void *context, int n, double *out)
 {
-    int i, panel = 0;
-    for (i = 0; i <= n; i++) {
-        double t = prepared_share_of((double)(i * PREPARED_SHARE_CELLS) / n);
-        out[i] = aspi_prepared_radius(p, g, context, aspi_prepared_rho(t), &panel);
-    }
+    double rho[PREPARED_SHARES];
+    int i;
+    for (i = 0; i <= n; i++)
+        rho[i] = aspi_prepared_rho(prepared_share_of((double)(i * PREPARED_SHARE_CELLS) / n));
+    aspi_prepared_radii(p, g, context, n + 1, rho, out);
 }
 
 /* d/dt at both ends of the n + 1 values. */
@@ -54,51 +54,19 @@ void aspi_prepared_normal_table(const prepared_source *s, double *table)
 
 /* ------------------------------------------------------------------ slopes seen from below */
 
-prepared_sight aspi_prepared_sight(const prepared_source *s, double mu)
-{
-    prepared_sight sight;
-    sight.s = s;
-    sight.mu = mu;
-    sight.base = aspi_prepared_base(s, mu);
-    return sight;
-}
-
-double aspi_prepared_seen(const void *context, double t)
-{
-    const prepared_sight *v = (const prepared_sight *)context;
-    double eta = aspi_exp_64(t), x = v->mu > 0 ? eta / v->mu : 1e9, z = x * x, bracket;
-    bracket = x < 0.1 ? eta * z * (1.0 / 3 - z * (1.0 / 5 - z * (1.0 / 7 - z * (1.0 / 9 - z / 11))))
-                      : eta - v->mu * aspi_atan_64(x, 1);
-    return aspi_exp_64(aspi_prepared_log(v->s, v->mu * v->mu + eta * eta) - v->base) * eta * eta * bracket;
-}
-
-/* From far out down to past the peak and to where next to nothing is left. */
-void aspi_prepared_sight_panels(const prepared_sight *sight, double t0, double longest, double least,
-                               prepared_panels *out)
-{
-    double unit = 0.5 * aspi_log_64(sight->mu * sight->mu + t0 * t0), t = unit + 2, peak = 0;
-    for (; t > sight->s->low; t -= 0.7) {
-        double here = aspi_prepared_seen(sight, t);
-        peak = aspi_max_64(peak, here);
-        if (here < 1e-8 * peak)
-            break;
-    }
-    aspi_prepared_integrate(aspi_prepared_seen, sight, t, sight->mu > 0 ? 5 : 3,
-                            aspi_max_64(sight->s->high, unit + 10), longest, least, out);
-}
-
 /* A row of TAIL; returns log eta where PREPARED_CUT lies beyond. */
 static double prepared_tail_row(const prepared_source *s, double t0, double mu, double *y)
 {
     prepared_panels panels;
     prepared_sight sight = aspi_prepared_sight(s, mu);
-    double unit = 0.5 * aspi_log_64(mu * mu + t0 * t0);
-    int i, panel = 0;
+    double unit = 0.5 * aspi_log_64(mu * mu + t0 * t0), rho = -aspi_log_64(PREPARED_CUT), cut;
+    int i;
     aspi_prepared_sight_panels(&sight, t0, .6, 1e-10, &panels);
     prepared_radii(&panels, aspi_prepared_seen, &sight, PREPARED_SHARE_CELLS, y);
     for (i = 0; i <= PREPARED_SHARE_CELLS; i++)
         y[i] -= unit;
-    return aspi_prepared_radius(&panels, aspi_prepared_seen, &sight, -aspi_log_64(PREPARED_CUT), &panel);
+    aspi_prepared_radii(&panels, aspi_prepared_seen, &sight, 1, &rho, &cut);
+    return cut;
 }
 
 void aspi_prepared_tail_table(const prepared_source *s, double t0, const double *mu, double *table)

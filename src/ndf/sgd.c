@@ -24,17 +24,6 @@ static double sgd_integral(double a, double p)
     return sum * h;
 }
 
-static aspi_log_density sgd_log_density;
-
-static asp_status sgd_prepare(asp_ndf *out, asp_error *err)
-{
-    double alpha = out->shape[0], gamma = out->shape[1];
-    out->table[0] = 1 / alpha;
-    out->table[1] = 1 / (alpha * alpha);
-    out->table[2] = 1 / (ASP_PI * (alpha * alpha) * sgd_integral(alpha, gamma));
-    return aspi_prepared_make(out, sgd_log_density, err);
-}
-
 static const asp_param sgd_params[] = {
     { "alpha", 1e-4, 0, 4, 0.1, "about the squared slope" },
     { "gamma", 0, 0, 4, 0.5, "a sharper peak: 0 Beckmann, Bagher's fits up to 1.8" }
@@ -48,7 +37,22 @@ static const asp_param sgd_params[] = {
 #include "sgd.c"
 #undef ASP_PRECISION
 
-static double sgd_log_density(const asp_ndf *k, double r2) { return -sgd_exponent_64(k, r2, 1); }
+ASP_CLONES static void sgd_log_density(const asp_ndf *k, size_t n, const double *ASP_RESTRICT r2,
+                                       double *ASP_RESTRICT out)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        out[i] = -sgd_exponent_64(k, r2[i], 1);
+}
+
+static asp_status sgd_prepare(asp_ndf *out, asp_error *err)
+{
+    double alpha = out->shape[0], gamma = out->shape[1];
+    out->table[0] = 1 / alpha;
+    out->table[1] = 1 / (alpha * alpha);
+    out->table[2] = 1 / (ASP_PI * (alpha * alpha) * sgd_integral(alpha, gamma));
+    return aspi_prepared_make(out, sgd_log_density, err);
+}
 
 ASP_RECORD asp_model asp_model_sgd = {
     "sgd", NULL, "Shifted Gamma Distribution (SGD)",

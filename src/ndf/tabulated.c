@@ -23,23 +23,6 @@ typedef char tabulated_fits[TABULATED_M + 32 <= PREPARED_OWN ? 1 : -1];
 #define ASP_PRECISION 64
 #include "asperity/elementary.h"
 
-static double tabulated_log_density(const asp_ndf *k, double r2)
-{
-    const double *x = k->table + TABULATED_X, *y = k->table + TABULATED_Y, *m = k->table + TABULATED_M;
-    double at = aspi_log_64(r2 + k->table[TABULATED_S2]), t, h, rise;
-    int last = (int)k->table[TABULATED_LAST], i = 0;
-    while (i < last && at >= x[i + 1])
-        i++;
-    if (i == last)
-        return k->table[TABULATED_NORM] + y[i] + (at - x[i]) * k->table[TABULATED_TAIL];
-    h = x[i + 1] - x[i];
-    t = (at - x[i]) / h;
-    rise = y[i + 1] - y[i];
-    return k->table[TABULATED_NORM] + y[i]
-         + t * (h * m[i] + t * ((3 * rise - h * (2 * m[i] + m[i + 1]))
-                                + t * (h * (m[i] + m[i + 1]) - 2 * rise)));
-}
-
 /* The knots' slopes: those of the cubic spline with continuous second derivative, as far as it is monotone
  * (Fritsch, Carlson 1980: between 0 and three times the lesser secant), which keeps what is prepared exact. */
 static void tabulated_slopes(double *table, int last, double tail)
@@ -73,30 +56,6 @@ static void tabulated_slopes(double *table, int last, double tail)
     table[TABULATED_TAIL] = -tail;
 }
 
-/* Integral of P22 over the slopes: pi e^(y + x) over x, by Gauss's rule of 8 nodes on short pieces; beyond
- * the last knot a power. */
-static double tabulated_mass(const asp_ndf *k)
-{
-    static const double node[4] = { 0.18343464249564980, 0.52553240991632899, 0.79666647741362674,
-                                    0.96028985649753623 };
-    static const double weight[4] = { 0.36268378337836198, 0.31370664587788729, 0.22238103445337447,
-                                      0.10122853629037626 };
-    const double *x = k->table + TABULATED_X, s2 = k->table[TABULATED_S2];
-    int last = (int)k->table[TABULATED_LAST], i, j, n;
-    double sum = 0;
-    for (i = 0; i < last; i++)
-        for (j = 0; j < 8; j++) {
-            double half = (x[i + 1] - x[i]) / 16, middle = x[i] + half * (2 * j + 1);
-            for (n = 0; n < 8; n++) {
-                double at = middle + half * (n < 4 ? node[n] : -node[n - 4]);
-                sum += half * weight[n & 3]
-                     * aspi_exp_64(tabulated_log_density(k, aspi_exp_64(at) - s2) + at);
-            }
-        }
-    sum += aspi_exp_64(k->table[TABULATED_Y + last] + x[last]) / (-k->table[TABULATED_TAIL] - 1);
-    return ASP_PI * sum;
-}
-
 static asp_status tabulated_refuse(asp_error *err, const char *name, double value, double low, int open,
                                    double high, size_t i)
 {
@@ -126,6 +85,64 @@ static asp_status tabulated_check(const asp_slope_samples *s, asp_error *err)
     if (s->tail != 0 && !(s->tail >= 2 && s->tail <= 1e3))
         return asp_fail_range(err, "tail", s->tail, 2, 0, 1e3);
     return ASP_OK;
+}
+
+#undef ASP_PRECISION
+
+#define ASP_SCALAR_LOOPS        /* of reflections: gcc 12 leaves the search in them as it is */
+#define ASP_NDF tabulated
+#define ASP_PRECISION 64
+#include "tabulated.c"
+#undef ASP_PRECISION
+#define ASP_PRECISION 32
+#include "tabulated.c"
+#undef ASP_PRECISION
+
+ASP_CLONES static void tabulated_log_density(const asp_ndf *k, size_t n, const double *ASP_RESTRICT r2,
+                                             double *ASP_RESTRICT out)
+{
+    double x[TABULATED_BLOCK], s2 = k->table[TABULATED_S2];
+    size_t from, count, i;
+    for (from = 0; from < n; from += count) {
+        count = n - from < TABULATED_BLOCK ? n - from : TABULATED_BLOCK;
+        for (i = 0; i < count; i++)
+            x[i] = aspi_log_64(r2[from + i] + s2);
+        tabulated_logs_64(k, count, x, out + from);
+    }
+}
+
+/* Sum of weight e^(y + x). */
+ASP_CLONES static void tabulated_terms(size_t n, const double *ASP_RESTRICT x, const double *ASP_RESTRICT y,
+                                       double *ASP_RESTRICT out)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        out[i] = aspi_exp_64(y[i] + x[i]);
+}
+
+/* Integral of P22 over the slopes: pi e^(y + x) over x, by Gauss's rule of 8 nodes on short pieces; beyond
+ * the last knot a power. */
+#define TABULATED_NODES 64       /* 8 of each of 8 pieces between two knots */
+static double tabulated_mass(const asp_ndf *k)
+{
+    static const double node[4] = { 0.18343464249564980, 0.52553240991632899, 0.79666647741362674,
+                                    0.96028985649753623 };
+    static const double weight[4] = { 0.36268378337836198, 0.31370664587788729, 0.22238103445337447,
+                                      0.10122853629037626 };
+    const double *x = k->table + TABULATED_X;
+    double at[TABULATED_NODES], y[TABULATED_NODES], terms[TABULATED_NODES], sum = 0;
+    int last = (int)k->table[TABULATED_LAST], i, n;
+    for (i = 0; i < last; i++) {
+        double half = (x[i + 1] - x[i]) / 16;
+        for (n = 0; n < TABULATED_NODES; n++)
+            at[n] = x[i] + half * (2 * (n >> 3) + 1 + (n & 4 ? -node[n & 3] : node[n & 3]));
+        tabulated_logs_64(k, TABULATED_NODES, at, y);
+        tabulated_terms(TABULATED_NODES, at, y, terms);
+        for (n = 0; n < TABULATED_NODES; n++)
+            sum += half * weight[n & 3] * terms[n];
+    }
+    sum += aspi_exp_64(k->table[TABULATED_Y + last] + x[last]) / (-k->table[TABULATED_TAIL] - 1);
+    return ASP_PI * sum;
 }
 
 static asp_status tabulated_prepare(asp_ndf *out, asp_error *err)
@@ -161,16 +178,6 @@ static asp_status tabulated_prepare(asp_ndf *out, asp_error *err)
     out->table[PREPARED_IS_BENT] = 1;
     return aspi_prepared_make(out, tabulated_log_density, err);
 }
-#undef ASP_PRECISION
-
-#define ASP_SCALAR_LOOPS        /* of reflections: gcc 12 leaves the search in them as it is */
-#define ASP_NDF tabulated
-#define ASP_PRECISION 64
-#include "tabulated.c"
-#undef ASP_PRECISION
-#define ASP_PRECISION 32
-#include "tabulated.c"
-#undef ASP_PRECISION
 
 ASP_RECORD asp_model asp_model_tabulated = {
     "tabulated", NULL, "a density of slopes measured ring by ring", "samples of P22 over the slope",
@@ -193,6 +200,7 @@ asp_status asp_tabulated_make(const asp_slope_samples *samples, const asp_map *m
 
 #define tabulated_ring ASP_NDF_NAME(_ring)
 #define tabulated_between ASP_NDF_NAME(_between)
+#define tabulated_logs ASP_NDF_NAME(_logs)
 #define tabulated_block ASP_NDF_NAME(_block)
 
 /* Where the ring of slopes lies: x of the knots. */
@@ -201,15 +209,15 @@ ASP_FN asp_real tabulated_ring(const asp_shape *k, asp_real r2, asp_real z2)
     return aspi_log((r2 + k->table[TABULATED_S2] * z2) / z2);
 }
 
-/* P22(x)/z2^2 from the knots before and after x, the same where the last is left behind: values y, slopes m. */
-ASP_FN asp_real tabulated_between(const asp_shape *k, asp_real x, asp_real z2, asp_real x0, asp_real x1,
-                                  asp_real y0, asp_real y1, asp_real m0, asp_real m1)
+/* log P22(x) from the knots before and after x, the same where the last is left behind: values y, slopes m. */
+ASP_FN asp_real tabulated_between(const asp_shape *k, asp_real x, asp_real x0, asp_real x1, asp_real y0, asp_real y1,
+                                  asp_real m0, asp_real m1)
 {
     asp_real d = x - x0, h = x1 - x0, t = d / aspi_select(h > R(0.0), h, R(1.0)), rise = y1 - y0;
     asp_real line = y0 + d * k->table[TABULATED_TAIL];
     asp_real cubic = y0 + t * (h * m0 + t * ((R(3.0) * rise - h * (R(2.0) * m0 + m1))
                                              + t * (h * (m0 + m1) - R(2.0) * rise)));
-    return aspi_exp(k->table[TABULATED_NORM] + aspi_select(h > R(0.0), cubic, line)) / (z2 * z2);
+    return k->table[TABULATED_NORM] + aspi_select(h > R(0.0), cubic, line);
 }
 
 ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
@@ -217,25 +225,16 @@ ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
     const asp_real *x = k->table + TABULATED_X, *y = k->table + TABULATED_Y, *m = k->table + TABULATED_M;
     asp_real at = tabulated_ring(k, r2, z2);
     int last = (int)k->table[TABULATED_LAST], i = aspi_knot(x, last, at), j = i < last ? i + 1 : last;
-    return tabulated_between(k, at, z2, x[i], x[j], y[i], y[j], m[i], m[j]);
+    return aspi_exp(tabulated_between(k, at, x[i], x[j], y[i], y[j], m[i], m[j])) / (z2 * z2);
 }
 
-/* The same in loops, in stages. */
-ASP_FN void tabulated_block(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT mx,
-                            const asp_real *ASP_RESTRICT my, const asp_real *ASP_RESTRICT mz,
-                            asp_real *ASP_RESTRICT out)
+/* The same in loops, in stages, up to TABULATED_BLOCK at a time: log P22, */
+ASP_FN void tabulated_logs(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT x, asp_real *ASP_RESTRICT out)
 {
-    asp_real x[TABULATED_BLOCK], z2[TABULATED_BLOCK], x0[TABULATED_BLOCK], x1[TABULATED_BLOCK];
-    asp_real y0[TABULATED_BLOCK], y1[TABULATED_BLOCK], m0[TABULATED_BLOCK], m1[TABULATED_BLOCK];
+    asp_real x0[TABULATED_BLOCK], x1[TABULATED_BLOCK], y0[TABULATED_BLOCK], y1[TABULATED_BLOCK];
+    asp_real m0[TABULATED_BLOCK], m1[TABULATED_BLOCK];
     int before[TABULATED_BLOCK], after[TABULATED_BLOCK], last = (int)k->table[TABULATED_LAST];
     size_t i;
-    if (!n)
-        return;
-    for (i = 0; i < n; i++) {
-        asp_v3 m = aspi_facet(k, aspi_vector(mx[i], my[i], mz[i]));
-        z2[i] = m.z * m.z;
-        x[i] = tabulated_ring(k, aspi_length2(m), z2[i]);
-    }
     aspi_knots_n(k->table + TABULATED_X, last, n, x, before);
     for (i = 0; i < n; i++)
         after[i] = before[i] < last ? before[i] + 1 : last;
@@ -246,8 +245,26 @@ ASP_FN void tabulated_block(const asp_shape *k, size_t n, const asp_real *ASP_RE
     aspi_rows_n(k->table + TABULATED_M, n, before, m0);
     aspi_rows_n(k->table + TABULATED_M, n, after, m1);
     for (i = 0; i < n; i++)
-        out[i] = aspi_density_result(k, tabulated_between(k, x[i], z2[i], x0[i], x1[i], y0[i], y1[i], m0[i], m1[i]),
-                                     mz[i]);
+        out[i] = tabulated_between(k, x[i], x0[i], x1[i], y0[i], y1[i], m0[i], m1[i]);
+}
+
+/* and the density. */
+ASP_FN void tabulated_block(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT mx,
+                            const asp_real *ASP_RESTRICT my, const asp_real *ASP_RESTRICT mz,
+                            asp_real *ASP_RESTRICT out)
+{
+    asp_real x[TABULATED_BLOCK], z2[TABULATED_BLOCK], y[TABULATED_BLOCK];
+    size_t i;
+    if (!n)
+        return;
+    for (i = 0; i < n; i++) {
+        asp_v3 m = aspi_facet(k, aspi_vector(mx[i], my[i], mz[i]));
+        z2[i] = m.z * m.z;
+        x[i] = tabulated_ring(k, aspi_length2(m), z2[i]);
+    }
+    tabulated_logs(k, n, x, y);
+    for (i = 0; i < n; i++)
+        out[i] = aspi_density_result(k, aspi_exp(y[i]) / (z2[i] * z2[i]), mz[i]);
 }
 
 #define ASP_OWN_DENSITY_N

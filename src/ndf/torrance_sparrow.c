@@ -27,16 +27,6 @@ static double torrance_sparrow_integral(double alpha)
     return sum * h;
 }
 
-static aspi_log_density torrance_sparrow_log_density;
-
-static asp_status torrance_sparrow_prepare(asp_ndf *out, asp_error *err)
-{
-    double alpha = out->shape[0];
-    out->table[0] = 1 / (alpha * alpha);
-    out->table[1] = 1 / (ASP_PI * torrance_sparrow_integral(alpha));
-    return aspi_prepared_make(out, torrance_sparrow_log_density, err);
-}
-
 static const asp_param torrance_sparrow_params[] = {
     { "alpha", 1e-3, 0, 100, 0.3, "1/e angle of the facets, in radians" }
 };
@@ -50,9 +40,20 @@ static const asp_param torrance_sparrow_params[] = {
 #undef ASP_PRECISION
 
 /* P22 = D cos^4. */
-static double torrance_sparrow_log_density(const asp_ndf *k, double r2)
+ASP_CLONES static void torrance_sparrow_log_density(const asp_ndf *k, size_t n, const double *ASP_RESTRICT r2,
+                                                    double *ASP_RESTRICT out)
 {
-    return -torrance_sparrow_exponent_64(k, r2, 1) - 2 * aspi_log1p_64(r2);
+    size_t i;
+    for (i = 0; i < n; i++)
+        out[i] = -torrance_sparrow_exponent_64(k, r2[i], 1) - 2 * aspi_log1p_64(r2[i]);
+}
+
+static asp_status torrance_sparrow_prepare(asp_ndf *out, asp_error *err)
+{
+    double alpha = out->shape[0];
+    out->table[0] = 1 / (alpha * alpha);
+    out->table[1] = 1 / (ASP_PI * torrance_sparrow_integral(alpha));
+    return aspi_prepared_make(out, torrance_sparrow_log_density, err);
 }
 
 ASP_RECORD asp_model asp_model_torrance_sparrow = {
