@@ -312,7 +312,7 @@ typedef struct asp_bsdf asp_bsdf;        /* what a scattering model is: see aspe
  * wi to wo is f of radiance from wo to wi. */
 typedef enum asp_transport { ASP_RADIANCE = 0, ASP_IMPORTANCE = 1 } asp_transport;
 
-#define ASP_ENERGY_NUMBERS 648
+#define ASP_ENERGY_NUMBERS 652
 
 typedef struct asp_material {
     const asp_bsdf *model;

@@ -2,6 +2,7 @@
  *
  * Against long double (float64) and double (float32) of the C library, over random arguments. The
  * bounds are those stated in asperity/elementary.h. */
+#include "random.h"
 #include "asperity.h"
 
 #define ASP_PRECISION 64
@@ -15,15 +16,6 @@
 #include <stdio.h>
 
 static int passed, failed;
-static uint64_t state = 88172645463325252u;
-
-static double uniform(void)
-{
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return (double)(state >> 11) * 0x1p-53;
-}
 
 static void report(const char *what, double low, double high, double worst, double at, double bound)
 {

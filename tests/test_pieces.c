@@ -2,6 +2,7 @@
  *
  * Every length up to three registers and a bit, arguments at and beyond all ends. The knots also against a search
  * one by one, and a polynomial of degree 6 against itself. */
+#include "random.h"
 #include "asperity.h"
 
 #define ASP_PRECISION 64
@@ -16,15 +17,6 @@
 enum { LONGEST = 53 };
 
 static int passed, failed;
-static uint64_t state = 88172645463325252u;
-
-static double uniform(void)
-{
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return (double)(state >> 11) * 0x1p-53;
-}
 
 static void report(const char *what, int differ)
 {

@@ -4,6 +4,7 @@
  * quadrature over its range: sigma from both sides, and the samplers by exact inversion: the share of slopes
  * beyond the radius that comes out, and the share of azimuths, by quadrature, give the uniform numbers back,
  * and so nothing but the law can come out. Batches and float32 against single float64 calls. */
+#include "random.h"
 #include "prepared_known.h"
 
 #include <math.h>
@@ -17,15 +18,6 @@ extern const asp_model asp_model_abc, asp_model_sgd, asp_model_gtr, asp_model_to
 #define PI 3.14159265358979323846
 
 static int passed, failed;
-static uint64_t state = 88172645463325252u;
-
-static double uniform(void)
-{
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return (double)(state >> 11) * 0x1p-53;
-}
 
 static void report(const char *what, const char *of, double worst, double bound)
 {

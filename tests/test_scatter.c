@@ -126,6 +126,29 @@ static void check_energy_glass(void)
     }
 }
 
+/* A smooth surface loses light within a roughness of the horizon only: that is where it must be given back, not by
+ * weights of thousands elsewhere. */
+static void check_even(void)
+{
+    static const char *const smooth[] = {
+        "compensated:metal=Ag,ndf=(student_t:alpha=0.001,gamma=4)", "compensated:metal=Ag,ndf=(ggx:alpha=0.001)",
+        "compensated_dielectric:ndf=(ggx:alpha=0.002)"
+    };
+    double worst = 0;
+    for (size_t i = 0; i < sizeof smooth / sizeof *smooth; i++) {
+        asp_material mat = material(smooth[i]);
+        uint64_t state = 1;
+        double sum = 0, sum2 = 0, n = 200000;
+        for (int j = 0; j < n; j++) {
+            double w = asp_sample_lobe(&mat, direction(0.5 * PI - 1e-4, 1), next(&state), next(&state), next(&state)).weight.g;
+            sum += w;
+            sum2 += w * w;
+        }
+        worst = fmax(worst, n * sum2 / (sum * sum));
+    }
+    expect(worst < 4, "samples near the horizon of smooth compensated surfaces have even weights: mean w^2 over mean^2", worst);
+}
+
 /* The share of what is given back that crosses, against that of walks. */
 static void check_split(void)
 {
@@ -445,6 +468,7 @@ int main(void)
 {
     check_energy();
     check_energy_glass();
+    check_even();
     check_split();
     check_limits();
     check_walk();

@@ -2,6 +2,7 @@
  *
  * Phong, hyper-Cauchy and the paper's general family against their own closed forms, against one
  * another, and in their limits: Beckmann and GGX. Their golden file is test_golden.c's. */
+#include "random.h"
 #include "asperity.h"
 
 #include <math.h>
@@ -12,15 +13,6 @@
 
 static const double pi = 3.14159265358979323846;
 static int passed, failed;
-static uint64_t state = 88172645463325252u;
-
-static double uniform(void)
-{
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return (double)(state >> 11) * 0x1p-53;
-}
 
 static void report(const char *what, double worst, double bound)
 {

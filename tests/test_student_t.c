@@ -5,6 +5,7 @@
  * samplers (their distribution functions at the sample give the uniform numbers back), the samplers'
  * law by chi-square, also against a rejection sampler of another construction, and no NaN or infinity
  * for any finite input. ASPERITY_SAMPLES sets the samples per chi-square case. */
+#include "random.h"
 #include "student_reference.h"
 #include "student_formulas.h"
 
@@ -18,15 +19,6 @@ static const double gammas[] = { 1.501, 1.51, 1.65, 2, 2.5, 4, 10, 50, 1e4, INFI
 #define GAMMAS (sizeof gammas / sizeof gammas[0])
 
 static int passed, failed;
-static uint64_t state = 88172645463325252u;
-
-static double uniform(void)
-{
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return (double)(state >> 11) * 0x1p-53;
-}
 
 static void report(const char *what, double gamma, double worst, double bound)
 {

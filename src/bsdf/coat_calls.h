@@ -1,7 +1,7 @@
 /* coat_calls.h - eval, pdf and sample of single reflection plus a diffuse rest
  *
  * The model defines coat_rest(mat, E(wi), E(wo)), what is added to single reflection, coat_share(mat, E(wi)),
- * the share of samples spent on visible normals, and may define COAT_SCALE(mat, F0, E(wi)), a factor of
+ * the share of samples spent on visible normals (the others: aspi_rest_lobe), and may define COAT_SCALE(mat, F0, E(wi)), a factor of
  * the reflection with mat->a as F0. */
 
 #ifndef COAT_SCALE
@@ -37,9 +37,11 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
 
 static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
 {
-    asp_real F[3], pdf;
+    asp_real F[3], pdf, share;
     coat_lobe(mat, *wi, *wo, F, &pdf);
-    return aspi_mixed_density(wi->z, wo->z, pdf, coat_share(mat, aspi_energy_at(mat, mat->energy, *wi)));
+    share = coat_share(mat, aspi_energy_at(mat, mat->energy, *wi));
+    pdf = share * pdf + (R(1.0) - share) * aspi_rest_density(mat->energy, aspi_above(wo->z));
+    return wi->z <= R(0.0) ? R(0.0) : pdf;
 }
 
 static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2, asp_real u3,
@@ -47,7 +49,7 @@ static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_r
 {
     asp_real share = coat_share(mat, aspi_energy_at(mat, mat->energy, *wi)), pdf;
     asp_v3 m = ASPI_CALL(asp_sample_visible)(&mat->ndf, *wi, u1, u2);
-    out->wo = u3 < share ? aspi_reflect(*wi, m) : aspi_cosine_lobe(*wi, u1, u2);
+    out->wo = u3 < share ? aspi_reflect(*wi, m) : aspi_rest_lobe(mat->energy, *wi, u1, u2);
     out->pdf = bsdf_pdf(mat, wi, &out->wo);
     bsdf_eval(mat, wi, &out->wo, 1, &out->weight);
     /* next to the horizon both may be too small to have an inverse */

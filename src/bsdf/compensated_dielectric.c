@@ -95,6 +95,7 @@ ASP_RECORD asp_bsdf asp_bsdf_compensated_dielectric = {
 
 #ifndef COMPENSATED_DIELECTRIC_NAMES
 #define COMPENSATED_DIELECTRIC_NAMES
+#define energy_of ASP_NDF_NAME(_energy_of)
 #define side_energy ASP_NDF_NAME(_side_energy)
 #define given_back ASP_NDF_NAME(_given_back)
 #define crossing_share ASP_NDF_NAME(_crossing_share)
@@ -102,11 +103,16 @@ ASP_RECORD asp_bsdf asp_bsdf_compensated_dielectric = {
 #define rest_density ASP_NDF_NAME(_rest_density)
 #endif
 
+ASP_FN const asp_real *energy_of(const asp_mat *mat, asp_real z)
+{
+    return z < R(0.0) ? mat->energy + ENERGY_INSIDE : mat->energy;
+}
+
 /* E on the side of w. */
 ASP_FN asp_real side_energy(const asp_mat *mat, asp_v3 w)
 {
     asp_real turned = w.z < R(0.0) && !(mat->a.r > R(0.0)) ? R(-1.0) : R(1.0);
-    const asp_real *table = w.z < R(0.0) ? mat->energy + ENERGY_INSIDE : mat->energy;
+    const asp_real *table = energy_of(mat, w.z);
     w.x = turned * w.x;
     w.y = turned * w.y;
     w.z = aspi_abs(w.z);
@@ -143,7 +149,7 @@ ASP_FN asp_real rest_density(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 {
     asp_real p = crossing_share(mat, wi);
     p = (wi.z < R(0.0)) != (wo.z < R(0.0)) ? p : R(1.0) - p;
-    return wi.z == R(0.0) ? R(0.0) : p * aspi_abs(wo.z) * R(1.0 / ASP_PI);
+    return wi.z == R(0.0) ? R(0.0) : p * aspi_rest_density(energy_of(mat, wo.z), aspi_abs(wo.z));
 }
 
 static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, asp_c3 *out)
@@ -181,9 +187,10 @@ static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_r
             return;
         }
     } else {
-        out->wo = aspi_cosine_lobe(*wi, u1, u2);
         by = (u3 - share) / (R(1.0) - share) < crossing_share(mat, *wi) ? R(-1.0) : R(1.0);
-        out->wo.z = (wi->z < R(0.0) ? -by : by) * out->wo.z;
+        by = wi->z < R(0.0) ? -by : by;
+        out->wo = aspi_rest_lobe(energy_of(mat, by), *wi, u1, u2);
+        out->wo.z = by * out->wo.z;
         out->pdf = bsdf_pdf(mat, wi, &out->wo);
         bsdf_eval(mat, wi, &out->wo, 1, &out->weight);
         w = out->pdf > R(0.0) ? out->weight.r / out->pdf : out->pdf;

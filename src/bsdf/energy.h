@@ -20,12 +20,14 @@ enum {
     ENERGY_COUNT,                                    /* columns in use, */
     ENERGY_HEIGHT,                                   /* rows of each, */
     ENERGY_TURNS,                                    /* and how often they repeat round the surface */
+    ENERGY_SPREAD,                                   /* 1 - E is about in proportion to 1/(cos^2 + spread); */
+    ENERGY_SPREAD_LOG,                               /* log(1 + 1/spread) */
     ENERGY_FILM,                                     /* a film's colour over the cosine, or the */
     ENERGY_INSIDE = ENERGY_FILM,                     /* table of the other side */
     ENERGY_END = ENERGY_FILM + 3 * ENERGY_FILM_NODES
 };
-#if ENERGY_ROWS * ENERGY_COLUMNS + 4 + 3 * ENERGY_FILM_NODES > ASP_ENERGY_NUMBERS \
-    || 2 * (ENERGY_ROWS * ENERGY_COLUMNS + 4) > ASP_ENERGY_NUMBERS
+#if ENERGY_ROWS * ENERGY_COLUMNS + 6 + 3 * ENERGY_FILM_NODES > ASP_ENERGY_NUMBERS \
+    || 2 * (ENERGY_ROWS * ENERGY_COLUMNS + 6) > ASP_ENERGY_NUMBERS
 #error "asp_material.energy is too small"
 #endif
 

@@ -4,12 +4,15 @@
 #include "bsdf/bsdf_number.h"
 #include "bsdf/cubic.h"
 #include "bsdf/energy.h"
+#include "bsdf/reflection.h"
 
 #ifndef ASPI_ENERGY_NAMES
 #define ASPI_ENERGY_NAMES
 #define aspi_energy_at ASP_NAME(aspi_energy_at)
 #define aspi_energy_row ASP_NAME(aspi_energy_row)
 #define aspi_energy_masked ASP_NAME(aspi_energy_masked)
+#define aspi_rest_lobe ASP_NAME(aspi_rest_lobe)
+#define aspi_rest_density ASP_NAME(aspi_rest_density)
 #endif
 
 #if (ASP_PRECISION == 64 && !defined(ASPI_ENERGY_64)) || \
@@ -64,5 +67,19 @@ ASP_FN asp_real aspi_energy_at(const asp_mat *mat, const asp_real *energy, asp_v
     }
     E = E * aspi_energy_masked(&mat->ndf, w, mat->mask);
     return aspi_min(aspi_max(E, R(0.0)), R(1.0));
+}
+
+/* A direction for what is given back, about (1 - E) cos: density cos/(pi L (cos^2 + spread)), L = log(1 + 1/spread),
+ * which is cos/pi on a rough surface; of a smooth one next to all is lost within a roughness of the horizon. */
+ASP_FN asp_v3 aspi_rest_lobe(const asp_real *energy, asp_v3 wi, asp_real u1, asp_real u2)
+{
+    asp_real c2 = energy[ENERGY_SPREAD] * aspi_expm1(energy[ENERGY_SPREAD_LOG] * (R(1.0) - u1));
+    c2 = aspi_select(c2 > R(1.0), R(1.0), c2);
+    return aspi_lobe_around(wi, R(1.0) - c2, c2, u2);
+}
+
+ASP_FN asp_real aspi_rest_density(const asp_real *energy, asp_real c)
+{
+    return c / (R(ASP_PI) * energy[ENERGY_SPREAD_LOG] * (c * c + energy[ENERGY_SPREAD]));
 }
 #endif

@@ -13,6 +13,7 @@
 #define aspi_above ASP_NAME(aspi_above)
 #define aspi_half_vector ASP_NAME(aspi_half_vector)
 #define aspi_cosine_lobe ASP_NAME(aspi_cosine_lobe)
+#define aspi_lobe_around ASP_NAME(aspi_lobe_around)
 #define aspi_reflected_joint ASP_NAME(aspi_reflected_joint)
 #define aspi_lit ASP_NAME(aspi_lit)
 #define aspi_facet_part ASP_NAME(aspi_facet_part)
@@ -46,16 +47,23 @@ ASP_FN asp_v3 aspi_half_vector(asp_v3 wi, asp_v3 wo)
     return wi;
 }
 
-/* A direction with density cos / pi. It does not depend on wi, but a NaN there must come out. */
-ASP_FN asp_v3 aspi_cosine_lobe(asp_v3 wi, asp_real u1, asp_real u2)
+/* The direction with sin^2 and cos^2 as given, turned by u2. It does not depend on wi, but a NaN there must
+ * come out. */
+ASP_FN asp_v3 aspi_lobe_around(asp_v3 wi, asp_real s2, asp_real c2, asp_real u2)
 {
     asp_v2 t = aspi_sincos2pi(u2);
-    asp_real r = aspi_sqrt(u1), nothing = (wi.x + wi.y + wi.z) * R(0.0);
+    asp_real r = aspi_sqrt(s2), nothing = (wi.x + wi.y + wi.z) * R(0.0);
     asp_v3 w;
     w.x = r * t.x + nothing;
     w.y = r * t.y + nothing;
-    w.z = aspi_sqrt(R(1.0) - u1) + nothing;
+    w.z = aspi_sqrt(c2) + nothing;
     return w;
+}
+
+/* Density cos / pi. */
+ASP_FN asp_v3 aspi_cosine_lobe(asp_v3 wi, asp_real u1, asp_real u2)
+{
+    return aspi_lobe_around(wi, u1, R(1.0) - u1, u2);
 }
 
 /* J of a reflection. */

@@ -110,6 +110,27 @@ static double both_ways(const asp_material *glass, asp_vec3 wi, const rule *r)
     return sum;
 }
 
+/* The spread for which the mean of h spread/(cos^2 + spread) against 2 cos dcos, h spread log(1 + 1/spread), is that
+ * of 1 - E, with h the loss at the horizon. */
+static void fit_spread(double *energy)
+{
+    int rows = (int)energy[ENERGY_HEIGHT], columns = (int)energy[ENERGY_COUNT], i;
+    double h = 1.0, low = -40.0, high = 7.0, mean, spread = 0.0;
+    for (i = 0; i < columns; i++)
+        h -= aspi_min(energy[i * rows], 1.0) / columns;
+    mean = (1.0 - energy[ENERGY_MEAN]) / aspi_max(h, 1e-3);
+    for (i = 0; i < 50; i++) {
+        double middle = 0.5 * (low + high);
+        spread = aspi_exp(middle);
+        if (spread * aspi_log1p(1.0 / spread) < mean)
+            low = middle;
+        else
+            high = middle;
+    }
+    energy[ENERGY_SPREAD] = spread;
+    energy[ENERGY_SPREAD_LOG] = aspi_log1p(1.0 / spread);
+}
+
 typedef double albedo_function(const asp_material *lobe, asp_vec3 wi, const rule *r);
 
 /* A table of one side, 1 outside and -1 inside; `kinked`: there is total reflection. */
@@ -135,6 +156,7 @@ static void fill(double *energy, const asp_material *lobe, albedo_function *albe
     energy[ENERGY_HEIGHT] = rows;
     energy[ENERGY_TURNS] = turns;
     energy[ENERGY_MEAN] = mean_of(lobe, energy);
+    fit_spread(energy);
 }
 
 void aspi_energy_prepare(asp_material *out)

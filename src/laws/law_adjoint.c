@@ -6,19 +6,14 @@
 
 #include <math.h>
 
-/* Steps of rounding that a facet found from wi and wo carries: the half vector is what is left of two
- * vectors of length 1 and n, and Fresnel's term takes the root of what is left of 1 next to total reflection. */
+/* Steps of rounding in eval: Fresnel's term takes the root of what is left of 1 next to total reflection. */
 static double steps_of(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double n)
 {
-    double k = wi.z * wo.z > 0 ? 1 : n;
+    double k = wi.z * wo.z > 0 ? 1 : n, dot = aspi_dot(wi, wo);
     double apart = hypot(hypot(wi.x + k * wo.x, wi.y + k * wo.y), wi.z + k * wo.z);
-    double mz = fmax(fabs(wi.z + k * wo.z) / apart, 1e-12);
-    double size = fabs(t->ndf->i00) + fabs(t->ndf->i01) + fabs(t->ndf->i10) + fabs(t->ndf->i11);
-    double slope = 1 / mz + hypot(t->ndf->map.tx, t->ndf->map.ty), dot = aspi_dot(wi, wo);
     /* cosines of both to the facet */
     double ci = fabs(1 + k * dot) / apart, co = fabs(k + dot) / apart, least = fmax(fmin(ci, co), 1e-12);
-    return 3e-15 * (1 + n) / apart / mz
-         * (1 / mz + size * slope / t->scale * 40 + 1 / fabs(wo.z) + 1 / fabs(wi.z) + 1 / (least * least));
+    return aspi_refracted_steps(t, wi, wo, n, 1 / (least * least));
 }
 
 static void compare(aspi_trial *t, const char *name, double found, double expected, double allowed, asp_vec3 wi,

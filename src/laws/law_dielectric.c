@@ -21,18 +21,15 @@ static asp_material make(const aspi_trial *t, size_t i, int transport, int mask)
     return mat;
 }
 
-/* Steps of rounding that a facet found from wi and wo carries: the half vector is what is left of two
- * vectors of length 1 and eta. */
-static double steps_of(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double eta)
+double aspi_refracted_steps(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double n, double more)
 {
-    double n = wi.z < 0 ? 1 / eta : eta;
-    double apart = wi.z * wo.z > 0 ? hypot(hypot(wi.x + wo.x, wi.y + wo.y), wi.z + wo.z)
-                                   : hypot(hypot(wi.x + n * wo.x, wi.y + n * wo.y), wi.z + n * wo.z);
-    double mz = fabs(wi.z * wo.z > 0 ? wi.z + wo.z : wi.z + n * wo.z) / apart;
+    double k = wi.z * wo.z > 0 ? 1 : n;
+    double apart = hypot(hypot(wi.x + k * wo.x, wi.y + k * wo.y), wi.z + k * wo.z);
+    double mz = fmax(fabs(wi.z + k * wo.z) / apart, 1e-12);
     double size = fabs(t->ndf->i00) + fabs(t->ndf->i01) + fabs(t->ndf->i10) + fabs(t->ndf->i11);
-    double slope = 1 / fmax(mz, 1e-12) + hypot(t->ndf->map.tx, t->ndf->map.ty);
-    return 3e-15 * (1 + n) / apart / fmax(mz, 1e-12)
-         * (1 / fmax(mz, 1e-12) + size * slope / t->scale * 40 + 1 / fabs(wo.z) + 1 / fabs(wi.z));
+    double slope = 1 / mz + hypot(t->ndf->map.tx, t->ndf->map.ty);
+    return 3e-15 * (1 + n) / apart / mz
+         * (1 / mz + size * slope / t->scale * 40 + 1 / fabs(wo.z) + 1 / fabs(wi.z) + more);
 }
 
 void aspi_law_refraction(aspi_trial *t)
@@ -43,10 +40,10 @@ void aspi_law_refraction(aspi_trial *t)
             const aspi_view *v = &t->views[(size_t)k % t->view_count];
             asp_vec3 wi = k & 1 ? flip(v->w) : v->w;
             asp_bsdf_sample s = asp_sample_lobe(&rad, wi, aspi_uniform(t), aspi_uniform(t), aspi_uniform(t));
-            double pdf = asp_pdf(&rad, wi, s.wo), steps, side, a;
+            double pdf = asp_pdf(&rad, wi, s.wo), n = cases[i].thin ? 1 : cases[i].eta, steps, side, a;
             if (!(s.weight.r > 1e-100) || pdf < 1e-200)      /* products of two such numbers are lost */
                 continue;
-            steps = steps_of(t, wi, s.wo, cases[i].thin ? 1 : cases[i].eta);
+            steps = aspi_refracted_steps(t, wi, s.wo, wi.z < 0 ? 1 / n : n, 0);
             if (steps > 1e-3)
                 continue;
             a = asp_eval_cos(&rad, wi, s.wo).r;

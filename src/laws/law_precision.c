@@ -308,7 +308,8 @@ static void finite(aspi_trial *t, const asp_shape *k)
         for (i = 0; i < DIRECTIONS; i++)
             for (j = 0; j < DIRECTIONS; j += kind == ASPI_ROUGH_DIFFUSE ? 11 : kind < ASPI_MATERIALS ? 1 : 5)
                 finite_pair(t, k, &mat, w[i], w[j], mat.mask);
-        for (i = 0; i < DIRECTIONS; i++)
+        /* all draw from the same normals: one material from everywhere, the others from an azimuth each */
+        for (i = kind % 3; i < DIRECTIONS; i += kind == ASPI_MIRROR ? 1 : 3)
             for (a = 0; a < 6; a++)
                 for (b = 0; b < 6; b++) {
                     SAMPLE s = CALL(sample)(&mat, w[i], (asp_real)ends[a], (asp_real)ends[b]);

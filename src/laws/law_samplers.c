@@ -176,7 +176,7 @@ static double test_stream(aspi_trial *t, const sampling *s, const char *name)
 {
     aspi_histogram *h = (aspi_histogram *)malloc(sizeof *h);
     block *b = (block *)malloc(sizeof *b);
-    double *radii = (double *)malloc(PILOT * sizeof *radii), p = 0, phi, largest = 0;
+    double *radii = (double *)malloc(PILOT * sizeof *radii), p = 0, phi, largest = 0, mean = 0;
     size_t done, i, known = 0;
     if (!h || !b || !radii) {
         t->no_memory = 1;
@@ -192,6 +192,7 @@ static double test_stream(aspi_trial *t, const sampling *s, const char *name)
                 radii[done + i] = INFINITY;
             known += radii[done + i] <= farthest(s);
             largest = fmax(largest, b->red[i]);
+            mean += b->red[i] / PILOT;
         }
     }
     /* seen from far below the mean plane next to nothing is sent back, eval is integrated to a share of 1; under
@@ -202,6 +203,8 @@ static double test_stream(aspi_trial *t, const sampling *s, const char *name)
     }
     aspi_histogram_edges(h, radii, PILOT, s->view ? standard_azimuth(s->ndf, turned(s, s->view->w)) : 0.1,
                          farthest(s));
+    if (s->horizon_only)
+        h->typical = fmin(mean, 1);
     if (t->planar)
         aspi_histogram_blocks(h, &t->lattice);
     aspi_histogram_integrate(h, t, stated, s);
@@ -308,11 +311,11 @@ void aspi_law_sample_materials(aspi_trial *t)
         { ASPI_PLASTIC, 0, 0 }, { ASPI_DIELECTRIC, 0, 1 }, { ASPI_DIELECTRIC, 1, 0 },
         { ASPI_COMPENSATED, 0, 0 }, { ASPI_SHEET, 0, 0 }, { ASPI_DIELECTRIC, 1, 1 },
         { ASPI_COMPENSATED_DIELECTRIC, 0, 0 }, { ASPI_COMPENSATED_DIELECTRIC, 0, 1 }, { ASPI_SHEET, 1, 1 },
-        { ASPI_COMPENSATED_DIELECTRIC, 1, 0 }, { ASPI_FILM, 0, 0 }, { ASPI_DIELECTRIC, 0, 0 }
+        { ASPI_COMPENSATED_DIELECTRIC, 1, 0 }, { ASPI_COMPENSATED_DIELECTRIC, 1, 1 }, { ASPI_FILM, 0, 0 }, { ASPI_DIELECTRIC, 0, 0 }
     };
     enum { CASES = sizeof cases / sizeof *cases };
     asp_roughness five = asp_map_to_roughness(&t->ndf->map);
-    int step = t->samples < 50000 ? 3 : 1, first = step > 1 ? (int)fmod(1e3 * fabs(log(t->scale * t->det)), 3) : 0;
+    int step = t->samples < 1000000 ? 3 : 1, first = step > 1 ? (int)fmod(1e3 * fabs(log(t->scale * t->det)), 3) : 0;
     for (int i = first; i < CASES; i += step)
         for (int weights = 0; weights < 2; weights++) {
             int kind = cases[i].kind, mixed = kind == ASPI_PLASTIC || kind == ASPI_COMPENSATED

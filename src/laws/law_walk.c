@@ -35,8 +35,8 @@ static double error2(const mean *m, double n)
     return fmax(m->sum2 / n - v * v, 0) / n;
 }
 
-/* Carried by less than 30 samples of equal size. */
-static int few(const mean *m) { return m->sum * m->sum < 30 * m->sum2 || !(m->sum > 0); }
+/* Carried by less than 100 samples of equal size: with fewer, the largest that there are may not have come yet. */
+static int few(const mean *m) { return m->sum * m->sum < 100 * m->sum2 || !(m->sum > 0); }
 
 static void join(mean *into, const mean *m)
 {

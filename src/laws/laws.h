@@ -116,6 +116,10 @@ double aspi_r2_density(const aspi_trial *t, double r, double phi);
 /* The material of a kind over the distribution (law_scatter.c), made when it is first asked for. */
 const asp_material *aspi_material(aspi_trial *t, int kind, const char **name);
 
+/* Steps of rounding that a facet found from wi and wo carries, n the index where wo is over that where wi is: the
+ * half vector is what is left of two vectors of length 1 and n. `more`: what else is as many steps (law_dielectric.c). */
+double aspi_refracted_steps(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double n, double more);
+
 /* ---- random numbers and statistics (statistics.c) */
 
 double aspi_uniform(aspi_trial *t);              /* [0, 1), 53 bits */
@@ -136,6 +140,7 @@ double aspi_sidak(double p, size_t tests);
 typedef struct aspi_histogram {
     double edge[ASPI_RINGS - 1];                 /* outer radius of each ring but the last */
     double phi0;
+    double typical;                              /* weight, if it is not 1: what the other value is integrated to */
     int planar;                                  /* cells are blocks of half the lattice's cells */
     asp_lattice lattice;
     int block_x, block_y, blocks_x;

@@ -93,6 +93,7 @@ void aspi_histogram_edges(aspi_histogram *h, double *radii, size_t count, double
     int i;
     memset(h, 0, sizeof *h);
     h->phi0 = phi0;
+    h->typical = 1;
     qsort(radii, count, sizeof *radii, ascending);
     while (count > 1 && !(radii[count - 1] <= most))
         count--;
@@ -167,29 +168,43 @@ typedef struct integrand {
     const aspi_trial *t;
     aspi_facet_function *f;
     const void *context;
-    double node[RULE], weight[RULE], tolerance;
+    double node[RULE], weight[RULE], tolerance, value_tolerance;
     int order, planar;        /* planar: s and phi of a rectangle are x and y */
 } integrand;
+
+/* Both at (x, y) of [0, 1]^2 in a rectangle, times `weight`. */
+static void add_point(const integrand *q, rectangle *a, double x, double y, double weight)
+{
+    double s = a->s0 + (a->s1 - a->s0) * x, phi = a->phi0 + (a->phi1 - a->phi0) * y;
+    double r = q->planar ? 1 : exp(s), d, v, jacobian;
+    asp_vec2 p = q->planar ? aspi_map_slope(&q->t->ndf->map, s, phi)
+                           : aspi_map_slope(&q->t->ndf->map, r * cos(phi), r * sin(phi));
+    asp_vec3 m = aspi_unit(-p.x, -p.y, 1);
+    q->f(q->context, m, &d, &v);
+    jacobian = (m.z * r) * (m.z * r) * m.z * weight;
+    a->density += d * jacobian;
+    a->value += v * jacobian;
+}
 
 static void apply_rule(const integrand *q, rectangle *a)
 {
     int i, j;
     a->density = a->value = 0;
-    for (i = 0; i < q->order; i++) {
-        double phi = a->phi0 + (a->phi1 - a->phi0) * q->node[i], cx = cos(phi), cy = sin(phi);
-        for (j = 0; j < q->order; j++) {
-            double s = a->s0 + (a->s1 - a->s0) * q->node[j], r = q->planar ? 1 : exp(s), d, v, jacobian;
-            asp_vec2 p = q->planar ? aspi_map_slope(&q->t->ndf->map, s, phi)
-                                   : aspi_map_slope(&q->t->ndf->map, r * cx, r * cy);
-            asp_vec3 m = aspi_unit(-p.x, -p.y, 1);
-            q->f(q->context, m, &d, &v);
-            jacobian = (m.z * r) * (m.z * r) * m.z * q->weight[i] * q->weight[j];
-            a->density += d * jacobian;
-            a->value += v * jacobian;
-        }
-    }
+    for (i = 0; i < q->order; i++)
+        for (j = 0; j < q->order; j++)
+            add_point(q, a, q->node[j], q->node[i], q->weight[i] * q->weight[j]);
     a->density *= q->t->det * (a->s1 - a->s0) * (a->phi1 - a->phi0);
     a->value *= q->t->det * (a->s1 - a->s0) * (a->phi1 - a->phi0);
+}
+
+/* A strip along an edge that all points of the rule miss, as of what sends light just above the horizon. */
+static int has_strip(const integrand *q, const rectangle *a)
+{
+    rectangle corners = *a;
+    corners.density = corners.value = 0;
+    for (int i = 0; i < 4; i++)
+        add_point(q, &corners, i & 1 ? 0.999 : 0.001, i & 2 ? 0.999 : 0.001, 1);
+    return (a->density == 0 && corners.density > 0) || (a->value == 0 && corners.value > 0);
 }
 
 static void integrate(const integrand *q, rectangle *a, int depth)
@@ -207,7 +222,8 @@ static void integrate(const integrand *q, rectangle *a, int depth)
         value += part[i].value;
     }
     if (depth > 0 && (fabs(density - a->density) > q->tolerance
-                      || fabs(value - a->value) > q->tolerance)) {
+                      || fabs(value - a->value) > q->value_tolerance
+                      || ((density == 0 || value == 0) && has_strip(q, a)))) {
         density = value = 0;
         for (i = 0; i < 4; i++) {
             integrate(q, &part[i], depth - 1);
@@ -252,6 +268,7 @@ void aspi_histogram_integrate(aspi_histogram *h, const aspi_trial *t, aspi_facet
     q.f = f;
     q.context = context;
     q.tolerance = 0.02 / (double)t->samples; /* a fiftieth of a sample */
+    q.value_tolerance = q.tolerance * h->typical;
     q.planar = h->planar;
     q.order = h->planar ? 2 : RULE;
     aspi_gauss(q.order, q.node, q.weight);
