@@ -373,11 +373,13 @@ typedef struct asp_laws_options {
     size_t   samples;       /* per chi-square test, [1000, 1e8]; the others scale with its root */
     uint64_t seed;          /* the same seed, the same findings */
     const char *only;       /* the name of one law, or NULL for all */
+    int      sparse;        /* 1: of the views and materials that the samplers' laws try a third, which one the
+                               distribution decides: for runs over many distributions */
     asp_progress *progress; /* may be NULL */
     void    *context;       /* of progress */
 } asp_laws_options;
 
-/* 100,000 samples, seed 1, all laws, no progress. */
+/* 100,000 samples, seed 1, all laws, not sparse, no progress. */
 asp_laws_options asp_laws_options_default(void);
 
 /* Called once per law. The result is valid during the call. */

@@ -109,6 +109,7 @@ int main(int argc, char **argv)
     int threaded;
     options = asp_laws_options_default();
     options.samples = longer ? 1000000 : 20000;
+    options.sparse = !longer;
     for (i = 1; i < (size_t)argc; i++) {
         if (strncmp(argv[i], "law=", 4) == 0)
             options.only = argv[i] + 4;

@@ -236,6 +236,7 @@ static int read_options(const cmd_args *args, asp_laws_options *how, const asp_m
     how->samples = (size_t)cmd_integer(args, "samples");
     how->seed = (uint64_t)cmd_integer(args, "seed");
     how->only = cmd_text(args, "law");
+    how->sparse = cmd_operand_count(args) == 0;
     for (size_t i = 0; asp_laws(i) && i < 63; i++)
         names[i] = asp_laws(i)->name;
     if (how->only && cmd_find(how->only, names) < 0)
@@ -363,9 +364,10 @@ static const cmd_option options[] = {
 
 const cmd_record cmd_check = {
     "check", "check distributions against the laws they must obey", "[SPEC...]", 0, -1,
-    "Without a SPEC: every distribution over representative parameters. For each\n"
-    "law the worst deviation, and what is allowed there. Exit status 1 when one is\n"
-    "broken.\n"
+    "For each law the worst deviation, and what is allowed there. Exit status 1\n"
+    "when one is broken. Without a SPEC: every distribution over representative\n"
+    "parameters; the samplers' laws then try a third of their views and materials\n"
+    "with each.\n"
     "\n"
     "  asperity check student_t:alpha=0.3,gamma=1.6 ellipsoid:alpha=0.2,theta_x=0.7",
     options, run

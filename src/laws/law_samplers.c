@@ -22,6 +22,7 @@ typedef struct sampling {
     int horizon_only;          /* weights are compared, not counts */
     double eta;                /* where light crosses: index of the other side over that of wi; else 0 */
     int crossing, thin;        /* look at what crosses; a sheet */
+    size_t samples;
 } sampling;
 
 /* As seen from the side of wi: turned by a point reflection, or for a sheet mirrored. */
@@ -204,12 +205,12 @@ static double test_stream(aspi_trial *t, const sampling *s, const char *name)
     aspi_histogram_edges(h, radii, PILOT, s->view ? standard_azimuth(s->ndf, turned(s, s->view->w)) : 0.1,
                          farthest(s));
     if (s->horizon_only)
-        h->typical = fmin(mean, 1);
+        h->typical = fmin(30 * mean, 1);         /* a cell's sum of some hundred spreads by ten weights or more */
     if (t->planar)
         aspi_histogram_blocks(h, &t->lattice);
     aspi_histogram_integrate(h, t, stated, s);
-    for (done = 0; done < t->samples; done += BLOCK) {
-        size_t n = t->samples - done < BLOCK ? t->samples - done : BLOCK;
+    for (done = 0; done < s->samples; done += BLOCK) {
+        size_t n = s->samples - done < BLOCK ? s->samples - done : BLOCK;
         draw(t, s, n, b);
         for (i = 0; i < n; i++) {
             asp_vec3 m;
@@ -226,8 +227,8 @@ static double test_stream(aspi_trial *t, const sampling *s, const char *name)
         if (done / BLOCK % 64 == 0 && aspi_tick(t, 0))
             break;
     }
-    p = s->horizon_only ? aspi_histogram_weight_p(h, (double)t->samples)
-                        : aspi_histogram_count_p(h, (double)t->samples);
+    p = s->horizon_only ? aspi_histogram_weight_p(h, (double)s->samples)
+                        : aspi_histogram_count_p(h, (double)s->samples);
 out:
     free(h);
     free(b);
@@ -242,6 +243,7 @@ void aspi_law_sample_normal(aspi_trial *t)
     sampling s = { 0 };
     double p;
     s.ndf = t->ndf;
+    s.samples = t->samples;
     p = test_stream(t, &s, "normals");
     aspi_find(t, aspi_sidak(p, 1), ALLOWED, "p = %.3g of %zu samples", p, t->samples);
 }
@@ -252,6 +254,7 @@ void aspi_law_sample_visible(aspi_trial *t)
     size_t tests = t->view_count + 2, i;
     sampling s = { 0 };
     s.ndf = t->ndf;
+    s.samples = t->samples;
     /* the library also samples for views below the horizon, of which sigma > 0 remains */
     below[0].w = aspi_direction(0.5 * ASPI_PI + atan(0.5 * t->scale * sqrt(t->det)), 0.3);
     below[0].name = "below the horizon";
@@ -261,7 +264,7 @@ void aspi_law_sample_visible(aspi_trial *t)
     for (i = 0; i < tests; i++) {
         double p;
         s.view = i < t->view_count ? &t->views[i] : &below[i - t->view_count];
-        if (!(asp_sigma(t->ndf, s.view->w) > 1e-150)) /* no facet to be seen */
+        if (!aspi_taken(t, i) || !(asp_sigma(t->ndf, s.view->w) > 1e-150)) /* or no facet to be seen */
             continue;
         p = test_stream(t, &s, s.view->name);
         aspi_find(t, aspi_sidak(p, tests), ALLOWED, "%s, p = %.3g of %zu samples", s.view->name, p,
@@ -285,9 +288,10 @@ static void each_material(aspi_trial *t, int weights)
             const char *name;
             sampling s = { 0 };
             double p;
-            if (!(asp_sigma(t->ndf, t->views[i].w) > 1e-150)) /* no facet to be seen */
-                continue;
+            if (!aspi_taken(t, i + (size_t)k + (size_t)weights) || !(asp_sigma(t->ndf, t->views[i].w) > 1e-150))
+                continue;           /* or no facet to be seen */
             s.ndf = t->ndf;
+            s.samples = t->samples;
             s.mat = aspi_material(t, kinds[k], &name);
             s.view = &t->views[i];
             s.horizon_only = weights;
@@ -303,8 +307,7 @@ void aspi_law_sample_bsdf(aspi_trial *t) { each_material(t, 0); }
 
 void aspi_law_weight_histogram(aspi_trial *t) { each_material(t, 1); }
 
-/* The other samplers, from one view each: a lobe and, where there is one, the light that crosses. Short runs take
- * a third of the cases, which one the surface decides. */
+/* The other samplers, from one view each: a lobe and, where there is one, the light that crosses. */
 void aspi_law_sample_materials(aspi_trial *t)
 {
     static const struct { int kind, below, crossing; } cases[] = {
@@ -315,8 +318,7 @@ void aspi_law_sample_materials(aspi_trial *t)
     };
     enum { CASES = sizeof cases / sizeof *cases };
     asp_roughness five = asp_map_to_roughness(&t->ndf->map);
-    int step = t->samples < 1000000 ? 3 : 1, first = step > 1 ? (int)fmod(1e3 * fabs(log(t->scale * t->det)), 3) : 0;
-    for (int i = first; i < CASES; i += step)
+    for (int i = 0; i < CASES; i++)
         for (int weights = 0; weights < 2; weights++) {
             int kind = cases[i].kind, mixed = kind == ASPI_PLASTIC || kind == ASPI_COMPENSATED
                                            || kind == ASPI_COMPENSATED_DIELECTRIC;
@@ -324,12 +326,14 @@ void aspi_law_sample_materials(aspi_trial *t)
             sampling s = { 0 };
             const char *name;
             double p;
-            if (!(asp_sigma(t->ndf, view.w) > 1e-150) || (mixed && five.alpha_x >= 50 * five.alpha_y))
+            if (!aspi_taken(t, (size_t)(i + weights)) || !(asp_sigma(t->ndf, view.w) > 1e-150)
+                || (mixed && five.alpha_x >= 50 * five.alpha_y))
                 continue;
             s.ndf = t->ndf;
             s.mat = aspi_material(t, kind, &name);
             s.view = &view;
             s.horizon_only = weights;
+            s.samples = t->sparse ? t->samples / 2 : t->samples;     /* most are drawn one by one */
             s.thin = kind == ASPI_SHEET;
             s.crossing = cases[i].crossing;
             s.eta = kind < ASPI_ONE_SIDED ? 0 : cases[i].below && !s.thin ? 1 / s.mat->c.r : s.mat->c.r;
@@ -341,7 +345,7 @@ void aspi_law_sample_materials(aspi_trial *t)
             p = test_stream(t, &s, name);
             aspi_find(t, aspi_sidak(p, 2 * CASES), ALLOWED, "%s%s%s, %s, %s, p = %.3g of %zu samples", name,
                       cases[i].below ? " from inside" : "", cases[i].crossing ? " across" : "", view.name,
-                      weights ? "weights" : "counts", p, t->samples);
+                      weights ? "weights" : "counts", p, s.samples);
             if (aspi_tick(t, (double)(i + 1) / CASES))
                 return;
         }

@@ -111,6 +111,11 @@ void aspi_find(aspi_trial *t, double deviation, double allowed, const char *wher
     va_end(args);
 }
 
+int aspi_taken(const aspi_trial *t, size_t index)
+{
+    return !t->sparse || (index + t->phase) % 3 == 0;
+}
+
 int aspi_tick(aspi_trial *t, double done)
 {
     if (!t->cancelled && t->progress && t->progress(t->context, t->done + t->share * done) != 0)
@@ -239,6 +244,7 @@ static void prepare_trial(aspi_trial *t, const asp_ndf *ndf)
     if (!(t->scale > 0 && t->scale < 1e30)) /* a broken sampler; its law will say so */
         t->scale = 1;
     choose_views(t);
+    t->phase = (unsigned)fmod(1e4 * fabs(log(t->scale * t->det) + ndf->map.m01 + 0.3 * ndf->map.tx), 1e6);
 }
 
 static int check_row(aspi_trial *t, const aspi_law_row *row, uint64_t seed, asp_law_report *report,
@@ -279,6 +285,7 @@ asp_status asp_laws_check(const asp_ndf *ndf, const asp_laws_options *options,
         return asp_fail(err, ASP_ENOMEM, "laws", "out of memory");
     prepare_trial(t, ndf);
     t->samples = o.samples;
+    t->sparse = o.sparse;
     t->progress = o.progress;
     t->context = o.context;
     for (i = 0; i < ROWS && status == ASP_OK; i++) {

@@ -32,6 +32,8 @@ typedef struct aspi_trial {
     int planar;                   /* the slopes are counted in cells, not round */
     asp_lattice lattice;          /* of those, in the standard frame */
     size_t samples;
+    int sparse;
+    unsigned phase;               /* a number of the distribution: which cases a sparse run takes */
     uint64_t state;               /* of the generator, reset for each law */
     aspi_view views[ASPI_VIEWS];  /* above the horizon, from the normal to grazing */
     size_t view_count;
@@ -58,6 +60,9 @@ typedef struct aspi_law_row {
 __attribute__((format(printf, 4, 5)))
 #endif
 void aspi_find(aspi_trial *t, double deviation, double allowed, const char *where, ...);
+
+/* Whether case `index` of a law is tried; a sparse run takes one of three. */
+int aspi_taken(const aspi_trial *t, size_t index);
 
 /* Tells the caller how far the law is, in [0, 1]; nonzero: stop. */
 int aspi_tick(aspi_trial *t, double done);
@@ -140,7 +145,7 @@ double aspi_sidak(double p, size_t tests);
 typedef struct aspi_histogram {
     double edge[ASPI_RINGS - 1];                 /* outer radius of each ring but the last */
     double phi0;
-    double typical;                              /* weight, if it is not 1: what the other value is integrated to */
+    double typical;                              /* what sums of the other value are large against, 1 at most */
     int planar;                                  /* cells are blocks of half the lattice's cells */
     asp_lattice lattice;
     int block_x, block_y, blocks_x;

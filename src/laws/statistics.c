@@ -267,7 +267,7 @@ void aspi_histogram_integrate(aspi_histogram *h, const aspi_trial *t, aspi_facet
     q.t = t;
     q.f = f;
     q.context = context;
-    q.tolerance = 0.02 / (double)t->samples; /* a fiftieth of a sample */
+    q.tolerance = 0.05 / (double)t->samples; /* a twentieth of a sample */
     q.value_tolerance = q.tolerance * h->typical;
     q.planar = h->planar;
     q.order = h->planar ? 2 : RULE;
