@@ -7,7 +7,7 @@
 #define _GNU_SOURCE
 #include "asperity.h"
 #include "asperity_ndf.h"
-#include "peers.h"
+#include "bench.h"
 #include "reference.h"
 
 #include <math.h>
@@ -23,11 +23,26 @@
 #include <sys/syscall.h>
 #endif
 
-enum { COUNT = 65536, FUNCTIONS = 8, MAX_MODELS = 64, MAX_CASES = 4 * FUNCTIONS * MAX_MODELS + 8,
-       MAX_ROUNDS = 99 };
-static const char *const function_names[FUNCTIONS] = { "D", "sigma", "G1", "visible", "normal",
-                                                       "eval", "pdf", "sample" };
-typedef void run_function(const void *context);
+enum { FUNCTIONS = 8, SCATTERING = 5, FIRST_OF_MATERIAL = 5, MAX_MODELS = 64, MAX_CASES = 4 * FUNCTIONS * MAX_MODELS + 8 };
+const char *const bench_functions[] = { "D", "sigma", "G1", "visible", "normal", "eval", "pdf", "sample", NULL };
+const char *const bench_scattering[] = { "eval", "pdf", "sample", "walk eval", "walk sample", NULL };
+
+/* splitmix64 (Steele, Lea, Flood 2014), also as a stream for walks. */
+static uint64_t random_state = 1;
+
+static double uniform(void)
+{
+    uint64_t z = (random_state += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+static double next(void *state)
+{
+    (void)state;
+    return uniform();
+}
 
 #define REAL double
 #define VEC3 asp_vec3
@@ -43,6 +58,7 @@ typedef asp_vec3s asp_out_type_64;
 typedef asp_rgbs asp_rgbs_type_64;
 #include "calls.h"
 
+#define WALKS
 #define REAL float
 #define VEC3 asp_vec3f
 #define S(name) name##f
@@ -59,22 +75,13 @@ typedef asp_rgbsf asp_rgbs_type_32;
 
 /* ------------------------------------------------------------------ cases */
 
-typedef struct bench_case {
-    const char *model, *function;
-    int    bits, batch;
-    run_function *run;
-    const void *context;
-    double ns[MAX_ROUNDS];
-    double median, instructions;
-} bench_case;
-
-static bench_case cases[MAX_CASES];
-static int case_count;
+bench_case bench_cases[MAX_CASES];
+int bench_case_count;
 
 static void add_case(const char *model, const char *function, int bits, int batch,
                      run_function *run, const void *context)
 {
-    bench_case *c = &cases[case_count++];
+    bench_case *c = &bench_cases[bench_case_count++];
     c->model = model;
     c->function = function;
     c->bits = bits;
@@ -84,19 +91,19 @@ static void add_case(const char *model, const char *function, int bits, int batc
     c->instructions = NAN;
 }
 
-static const bench_case *find_case(const char *model, const char *function, int bits, int batch)
+const bench_case *bench_find(const char *model, const char *function, int bits, int batch)
 {
     int i;
-    for (i = 0; i < case_count; i++)
-        if (cases[i].bits == bits && cases[i].batch == batch && !strcmp(cases[i].model, model) &&
-            !strcmp(cases[i].function, function))
-            return &cases[i];
+    for (i = 0; i < bench_case_count; i++)
+        if (bench_cases[i].bits == bits && bench_cases[i].batch == batch && !strcmp(bench_cases[i].model, model) &&
+            !strcmp(bench_cases[i].function, function))
+            return &bench_cases[i];
     return NULL;
 }
 
-static double median_of(const char *model, const char *function, int bits, int batch)
+double bench_median(const char *model, const char *function, int bits, int batch)
 {
-    const bench_case *c = find_case(model, function, bits, batch);
+    const bench_case *c = bench_find(model, function, bits, batch);
     return c ? c->median : NAN;
 }
 
@@ -168,17 +175,6 @@ static void pin_to_one_processor(void)
 }
 
 /* ------------------------------------------------------------------ data */
-
-static uint64_t random_state = 1;
-
-/* splitmix64, Steele et al. 2014 */
-static double uniform(void)
-{
-    uint64_t z = (random_state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
 
 static void *allocate(size_t size)
 {
@@ -259,11 +255,36 @@ static void add_model(const asp_model *model, const char *name, const double *sh
     f->ndf = asp_ndf_narrow(&d->ndf);
     f->material = asp_material_narrow(&d->material);
     for (k = 0; k < FUNCTIONS; k++) {
-        add_case(name, function_names[k], 32, 1, calls_32[k][1], f);
-        add_case(name, function_names[k], 32, 0, calls_32[k][0], f);
-        add_case(name, function_names[k], 64, 1, calls_64[k][1], d);
-        add_case(name, function_names[k], 64, 0, calls_64[k][0], d);
+        add_case(name, bench_functions[k], 32, 1, calls_32[k][1], f);
+        add_case(name, bench_functions[k], 32, 0, calls_32[k][0], f);
+        add_case(name, bench_functions[k], 64, 1, calls_64[k][1], d);
+        add_case(name, bench_functions[k], 64, 0, calls_64[k][0], d);
     }
+}
+
+/* A material in float32; `name` stays with the cases. walks: it has facets that light one another. */
+static void add_material(const char *name, const char *spec, int walks, const setup_32 *f0)
+{
+    setup_32 *f = allocate(sizeof *f);
+    asp_material mat;
+    asp_error err;
+    int k, first = bench_case_count;
+    if (asp_material_parse(NULL, spec, &mat, &err) != ASP_OK) {
+        fprintf(stderr, "bench: %s: %s %s\n", spec, err.name, err.reason);
+        exit(1);
+    }
+    *f = *f0;
+    f->ndf = asp_ndf_narrow(&mat.ndf);
+    f->material = asp_material_narrow(&mat);
+    for (k = 0; k < SCATTERING; k++)
+        if (k < FUNCTIONS - FIRST_OF_MATERIAL) {
+            add_case(name, bench_scattering[k], 32, 1, calls_32[FIRST_OF_MATERIAL + k][1], f);
+            add_case(name, bench_scattering[k], 32, 0, calls_32[FIRST_OF_MATERIAL + k][0], f);
+        } else if (walks) {
+            add_case(name, bench_scattering[k], 32, 0, k == 3 ? walk_eval_single_32 : walk_sample_single_32, f);
+        }
+    while (first < bench_case_count)
+        bench_cases[first++].material = 1;
 }
 
 static void add_references(const setup_32 *f)
@@ -299,179 +320,43 @@ static void measure(int rounds)
 {
     int r, i;
     for (r = -1; r < rounds; r++) {             /* round -1 warms up */
-        for (i = 0; i < case_count; i++) {
+        for (i = 0; i < bench_case_count; i++) {
             double begin = now_ns();
-            cases[i].run(cases[i].context);
+            bench_cases[i].run(bench_cases[i].context);
             if (r >= 0)
-                cases[i].ns[r] = (now_ns() - begin) / COUNT;
+                bench_cases[i].ns[r] = (now_ns() - begin) / COUNT;
         }
         if (isatty(2))
             fprintf(stderr, "\rround %d of %d ", r + 1, rounds);
     }
     if (isatty(2))
         fputs("\r                      \r", stderr);
-    for (i = 0; i < case_count; i++) {
-        qsort(cases[i].ns, (size_t)rounds, sizeof(double), by_value);
-        cases[i].median = cases[i].ns[rounds / 2];
-        cases[i].instructions = count_instructions(&cases[i]);
+    for (i = 0; i < bench_case_count; i++) {
+        qsort(bench_cases[i].ns, (size_t)rounds, sizeof(double), by_value);
+        bench_cases[i].median = bench_cases[i].ns[rounds / 2];
+        bench_cases[i].instructions = count_instructions(&bench_cases[i]);
     }
 }
 
-/* ------------------------------------------------------------------ printing */
-
-static const char *number(double x, char *buffer, size_t size)
-{
-    if (x == x)
-        snprintf(buffer, size, x < 10.0 ? "%.2f" : x < 100.0 ? "%.1f" : "%.0f", x);
-    else
-        snprintf(buffer, size, "n/a");
-    return buffer;
-}
-
-/* Each function's time over GGX's in the same run. */
-static double over_ggx(const bench_case *c)
-{
-    return c->median / median_of("ggx", c->function, c->bits, c->batch);
-}
-
-static void print_ratios(int bits, int batch)
-{
-    const char *model = NULL;
-    char a[32];
-    int i;
-    printf("\nover GGX");
-    for (i = 0; i < case_count; i++) {
-        const bench_case *c = &cases[i];
-        if (c->bits != bits || c->batch != batch || !strcmp(c->model, "by hand") || !strcmp(c->model, "ggx"))
-            continue;
-        if (c->model != model)
-            printf("\n%-17s", model = c->model);
-        printf(" %13s", number(over_ggx(c), a, sizeof a));
-    }
-    printf("\n");
-}
-
-static void print_table(int bits, int batch)
-{
-    char a[32], b[32], cell[80];
-    const char *model = NULL;
-    int i, k;
-    printf("\nfloat%d, %s: ns per call / instructions per call\n%-17s", bits,
-           batch ? "batch" : "single", "");
-    for (k = 0; k < FUNCTIONS; k++)
-        printf(" %13s", function_names[k]);
-    for (i = 0; i < case_count; i++) {
-        if (cases[i].bits != bits || cases[i].batch != batch || !strcmp(cases[i].model, "by hand"))
-            continue;
-        if (cases[i].model != model)
-            printf("\n%-17s", model = cases[i].model);
-        snprintf(cell, sizeof cell, "%s / %s", number(cases[i].median, a, sizeof a),
-                 number(cases[i].instructions, b, sizeof b));
-        printf(" %13s", cell);
-    }
-    print_ratios(bits, batch);
-}
+#define GGX "ndf=(ggx:alpha_x=0.3,alpha_y=0.1)"
+#define STUDENT "ndf=(student_t:alpha_x=0.3,alpha_y=0.1,gamma=3.7)"
+static const struct { const char *name, *spec; int walks; } materials[] = {
+    { "conductor ggx", "conductor:metal=Au," GGX, 1 },
+    { "conductor student_t 3.7", "conductor:metal=Au," STUDENT, 1 },
+    { "compensated ggx", "compensated:metal=Au," GGX, 0 },
+    { "dielectric ggx", "dielectric:" GGX, 1 },
+    { "dielectric student_t 3.7", "dielectric:" STUDENT, 1 },
+    { "sheet ggx", "dielectric:thin=1," GGX, 0 },
+    { "compensated_dielectric ggx", "compensated_dielectric:" GGX, 0 },
+    { "lambert_specular ggx", "lambert_specular:" GGX, 0 },
+    { "plastic ggx", "plastic:" GGX, 0 },
+    { "rough_diffuse ggx, eon", "rough_diffuse:form=eon," GGX, 1 },
+};
 
 static double best_reference(void)
 {
-    double x = median_of("by hand", "avx512", 32, 1), y = median_of("by hand", "avx2", 32, 1);
+    double x = bench_median("by hand", "avx512", 32, 1), y = bench_median("by hand", "avx2", 32, 1);
     return y < x || x != x ? y : x;
-}
-
-static void print_peers(double reference)
-{
-    size_t i;
-    printf("\nBeside peers, float32. `of hand`: time over the hand-written GGX conductor kernel's, each"
-           "\nin its own run (bench/peers.h)\n%-30s %8s %8s   %-18s %8s %8s   %s\n", "",
-           "ns", "of hand", "fastest peer", "ns", "of hand", "ratio of ratios");
-    for (i = 0; i < sizeof peer_rows / sizeof *peer_rows; i++) {
-        const peer_row *p = &peer_rows[i];
-        const char *model = !strcmp(p->model, "student_t") ? "student_t 3.7" : p->model;
-        double ours = median_of(model, p->function, 32, p->batch);
-        char name[64];
-        snprintf(name, sizeof name, "%s %s, %s", model, p->function, p->batch ? "batch" : "single");
-        printf("%-30s %8.2f %8.2f   %-18s %8.2f %8.2f   %.2f\n", name, ours, ours / reference,
-               p->peer, p->ns, p->ns / PEER_REFERENCE,
-               (p->ns / PEER_REFERENCE) / (ours / reference));
-    }
-}
-
-static void goal(const char *what, double value, double limit)
-{
-    printf("  %-66s %6.2f  goal %6.2f  %s\n", what, value, limit,
-           value <= limit ? "reached" : "NOT reached");
-}
-
-static void print_goals(double reference)
-{
-    static const char *const alone[3] = { "D", "sigma", "visible" };
-    double worst[4] = { 0.0, 0.0, 0.0, 0.0 };
-    const char *who[4] = { "", "", "", "" };
-    char line[96];
-    int i, k;
-    printf("\nGoals\n");
-    goal("GGX conductor sample, batch, over the hand-written kernel",
-         median_of("ggx", "sample", 32, 1) / reference, 4.0 / 3.7);
-    goal("GGX conductor sample, single, over the hand-written kernel",
-         median_of("ggx", "sample", 32, 0) / reference, 0.5 * 83.0 / 3.7);
-    goal("student_t (3.7) conductor eval, batch, over GGX's",
-         median_of("student_t 3.7", "eval", 32, 1) / median_of("ggx", "eval", 32, 1), 2.0);
-    for (i = 0; i < case_count; i++)
-        for (k = 0; k < 4; k++) {
-            const char *function = k < 3 ? alone[k] : "eval";
-            double ratio;
-            if (cases[i].bits != 32 || !cases[i].batch || strcmp(cases[i].function, function))
-                continue;
-            ratio = cases[i].median / median_of("ggx", function, 32, 1);
-            if (ratio > worst[k]) {
-                worst[k] = ratio;
-                who[k] = cases[i].model;
-            }
-        }
-    for (k = 0; k < 4; k++) {
-        snprintf(line, sizeof line, "slowest distribution's %s, batch, over GGX's: %s",
-                 k < 3 ? alone[k] : "conductor eval", who[k]);
-        goal(line, worst[k], k < 3 ? 4.0 : 2.0);
-    }
-}
-
-static void write_number(FILE *f, double x, const char *after)
-{
-    if (x == x)
-        fprintf(f, "%.4f%s", x, after);
-    else
-        fprintf(f, "null%s", after);
-}
-
-static int write_json(const char *path, int rounds, double reference)
-{
-    char temporary[4096];
-    FILE *f;
-    int i;
-    snprintf(temporary, sizeof temporary, "%s.part", path);
-    f = fopen(temporary, "w");
-    if (!f) {
-        perror(temporary);
-        return 1;
-    }
-    fprintf(f, "{\"count\": %d, \"rounds\": %d, \"reference_ns\": %.4f,\n \"cases\": [", COUNT, rounds,
-            reference);
-    for (i = 0; i < case_count; i++) {
-        fprintf(f, "%s\n  {\"model\": \"%s\", \"function\": \"%s\", \"bits\": %d, \"batch\": %s, "
-                   "\"ns\": %.4f, \"of_reference\": %.4f, \"of_ggx\": ",
-                i ? "," : "", cases[i].model, cases[i].function, cases[i].bits,
-                cases[i].batch ? "true" : "false", cases[i].median, cases[i].median / reference);
-        write_number(f, over_ggx(&cases[i]), ", \"instructions\": ");
-        write_number(f, cases[i].instructions, "}");
-    }
-    fputs("\n]}\n", f);
-    if (ferror(f) | fclose(f) || rename(temporary, path)) {
-        perror(path);
-        remove(temporary);
-        return 1;
-    }
-    printf("\nAll numbers: %s\n", path);
-    return 0;
 }
 
 int main(int argc, char **argv)
@@ -502,23 +387,20 @@ int main(int argc, char **argv)
         add_model(models[i], models[i]->name, NULL, &d, &f);
     if (asp_find_model(NULL, "student_t"))
         add_model(asp_find_model(NULL, "student_t"), "student_t 3.7", &gamma, &d, &f);
+    for (i = 0; i < (int)(sizeof materials / sizeof *materials); i++)
+        add_material(materials[i].name, materials[i].spec, materials[i].walks, &f);
     measure(rounds);
 
     reference = best_reference();
     if (reference != reference)         /* no lanes on this machine: the plain kernel instead */
-        reference = median_of("by hand", "plain C", 32, 0);
+        reference = bench_median("by hand", "plain C", 32, 0);
     printf("%d random directions, alpha %.1f x %.1f, default shapes, median of %d interleaved rounds\n",
            COUNT, alpha_x, alpha_y, rounds);
     printf("The hand-written GGX conductor kernel (sample, weight, pdf, RGB), ns per element:");
-    for (i = 0; i < case_count; i++)
-        if (!strcmp(cases[i].model, "by hand"))
-            printf("  %s %s", cases[i].function, number(cases[i].median, buffer, sizeof buffer));
+    for (i = 0; i < bench_case_count; i++)
+        if (!strcmp(bench_cases[i].model, "by hand"))
+            printf("  %s %s", bench_cases[i].function, bench_number(bench_cases[i].median, buffer, sizeof buffer));
     printf("\n");
-    print_table(32, 1);
-    print_table(32, 0);
-    print_table(64, 1);
-    print_table(64, 0);
-    print_peers(reference);
-    print_goals(reference);
-    return path ? write_json(path, rounds, reference) : 0;
+    bench_print(reference);
+    return path ? bench_write(path, rounds, reference) : 0;
 }

@@ -1,7 +1,7 @@
 /* calls.h - one loop per function, single and batch; read once per precision
  *
  * What is defined before reading: REAL, VEC3, S(name) (the library's name in this precision, single),
- * B(name) (batch), F(name) (our own name). */
+ * B(name) (batch), F(name) (our own name); WALKS for the walks too. */
 
 typedef struct F(setup) {
     F(asp_ndf_type) ndf;
@@ -33,6 +33,15 @@ SINGLE(pdf, s->out[0][i] = S(asp_pdf)(&s->material, AT(s->wi, i), AT(s->wo, i));
 SINGLE(sample, F(asp_sample_type) v = S(asp_sample)(&s->material, AT(s->wi, i), s->u1[i], s->u2[i]);
        s->out[0][i] = v.wo.x; s->out[1][i] = v.wo.y; s->out[2][i] = v.wo.z; s->out[3][i] = v.pdf;
        s->out[4][i] = v.weight.r; s->out[5][i] = v.weight.g; s->out[6][i] = v.weight.b;)
+
+#ifdef WALKS
+SINGLE(walk_eval, F(asp_rgb_type) v = S(asp_walk_eval_cos)(&s->material, AT(s->wi, i), AT(s->wo, i), next, NULL);
+       s->out[0][i] = v.r; s->out[1][i] = v.g; s->out[2][i] = v.b;)
+SINGLE(walk_sample, F(asp_sample_type) v = S(asp_walk_sample)(&s->material, AT(s->wi, i), next, NULL);
+       s->out[0][i] = v.wo.x; s->out[1][i] = v.wo.y; s->out[2][i] = v.wo.z; s->out[3][i] = v.pdf;
+       s->out[4][i] = v.weight.r; s->out[5][i] = v.weight.g; s->out[6][i] = v.weight.b;)
+#undef WALKS
+#endif
 
 #define BATCH(name, body) \
     static void F(name##_batch)(const void *context) \

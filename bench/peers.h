@@ -10,6 +10,9 @@
 
 #define PEER_REFERENCE 3.7
 
+/* The peer whose walks those are takes this for GGX's D. */
+#define PEER_WALK_D 8.6
+
 typedef struct peer_row {
     const char *model, *function;       /* our row: the model's name and the function's */
     int    batch;                       /* 1: vectorised over arrays */
@@ -29,6 +32,10 @@ static const peer_row peer_rows[] = {
     { "student_t", "G1", 0, "appleseed", 82, 955 },
     { "student_t", "visible", 0, "facet-forge", 594, 4002 },
     { "student_t", "eval", 0, "appleseed", 183, 2192 },
+    { "dielectric ggx", "eval", 0, "pbrt-v4", 38, 0 },
+    { "dielectric ggx", "sample", 0, "pbrt-v4", 106, 0 },
+    { "conductor ggx", "walk eval", 0, "facet-forge", 572, 0 },
+    { "conductor ggx", "walk sample", 0, "facet-forge", 380, 0 },
     { "ggx", "D", 1, "Mitsuba 3 LLVM", 0.70, 0 },
     { "ggx", "G1", 1, "Mitsuba 3 LLVM", 0.76, 0 },
     { "ggx", "visible", 1, "Mitsuba 3 LLVM", 4.9, 0 },
