@@ -66,22 +66,22 @@ typedef struct asp_param {
     const char *what;     /* a line for `asperity list` */
 } asp_param;
 
-/* Everything a reflection needs of the surface: a visible normal seen from wi by its height and its
- * cosine to wi, the mirrored direction, its density D/(4 sigma_i), and the projected areas from both;
- * sigma_o is of no meaning where wo points down. */
+/* Everything a reflection needs of the surface: a visible normal seen from wi by the squares of its height
+ * and of its cosine to wi (negative where the cosine is), which need no root, the mirrored direction, its
+ * density D/(4 sigma_i), and the projected areas from both; sigma_o is of no meaning where wo points down. */
 typedef struct asp_reflection {
-    double wo_x, wo_y, wo_z, m_z, cosine, pdf, sigma_i, sigma_o;
+    double wo_x, m_z2, wo_y, cosine2, wo_z, pdf, sigma_i, sigma_o;
 } asp_reflection;
 typedef struct asp_reflectionf {
-    float wo_x, wo_y, wo_z, m_z, cosine, pdf, sigma_i, sigma_o;
+    float wo_x, m_z2, wo_y, cosine2, wo_z, pdf, sigma_i, sigma_o;
 } asp_reflectionf;
 
 /* The same of a block. */
 typedef struct asp_reflections {
-    double *wo_x, *wo_y, *wo_z, *m_z, *cosine, *pdf, *sigma_i, *sigma_o;
+    double *wo_x, *m_z2, *wo_y, *cosine2, *wo_z, *pdf, *sigma_i, *sigma_o;
 } asp_reflections;
 typedef struct asp_reflectionsf {
-    float *wo_x, *wo_y, *wo_z, *m_z, *cosine, *pdf, *sigma_i, *sigma_o;
+    float *wo_x, *m_z2, *wo_y, *cosine2, *wo_z, *pdf, *sigma_i, *sigma_o;
 } asp_reflectionsf;
 
 /* The distribution in one precision, as the world sees it, through its slope map; ndf_loops.h makes

@@ -172,7 +172,7 @@ def check_vectorised():
            Path('src/core/material_batch.c'), Path('src/core/sggx.c')]
     hot += sorted(Path('src/core').glob('*_loops.h'))
     hot += sorted(Path('src/ndf').glob('*.h'))
-    hot += [Path('src/ndf/histogram_rows.c'), Path('src/bsdf/dielectric.c')]
+    hot += [Path('src/ndf/ggx.c'), Path('src/ndf/histogram_rows.c'), Path('src/bsdf/dielectric.c')]
     loops, replaced, single = {}, {}, set()
     for path in hot:
         if not path.is_file():

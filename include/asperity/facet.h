@@ -10,6 +10,7 @@
 #define aspi_facet ASP_NAME(aspi_facet)
 #define aspi_facet_back ASP_NAME(aspi_facet_back)
 #define aspi_vector ASP_NAME(aspi_vector)
+#define aspi_aimed ASP_NAME(aspi_aimed)
 #define aspi_at ASP_NAME(aspi_at)
 #define aspi_dot ASP_NAME(aspi_dot)
 #define aspi_length2 ASP_NAME(aspi_length2)
@@ -20,6 +21,7 @@
 #define aspi_masked ASP_NAME(aspi_masked)
 #define aspi_hidden ASP_NAME(aspi_hidden)
 #define aspi_joint ASP_NAME(aspi_joint)
+#define aspi_joint_ratio ASP_NAME(aspi_joint_ratio)
 #define aspi_lobe_density ASP_NAME(aspi_lobe_density)
 #define aspi_finite ASP_NAME(aspi_finite)
 
@@ -28,7 +30,8 @@
 /* What a density is cut at instead of overflowing, and what a denominator is kept above: at most
  * 1e10 of D, 1e20 of 1/sigma and 1e5 of the rest are ever multiplied. */
 #define ASP_LARGEST (ASP_PRECISION == 64 ? R(1e300) : R(3e38))
-/* Squared lengths are kept above this where they divide. */
+/* Squared lengths are kept above this where they divide; ASP_SMALLEST is added to what divides and may be 0,
+ * far below its last digit otherwise. */
 #define ASP_TINY (ASP_PRECISION == 64 ? R(1e-300) : R(1e-37))
 #define ASP_SMALLEST (ASP_PRECISION == 64 ? R(1e-150) : R(1e-19))
 #endif
@@ -40,6 +43,9 @@
 #else
 #define ASP_FACET_32
 #endif
+
+/* A view and what else a formula of visible normals knows before its random numbers come. */
+typedef struct aspi_aimed { asp_real x, y, z, w; } aspi_aimed;
 
 ASP_FN asp_v3 aspi_vector(asp_real x, asp_real y, asp_real z)
 {
@@ -134,7 +140,7 @@ ASP_FN asp_real aspi_density_result(const asp_shape *k, asp_real standard, asp_r
 /* Visible normals through reflection: D / (4 sigma_i). */
 ASP_FN asp_real aspi_lobe_density(asp_real ci, asp_real D, asp_real sigma_i)
 {
-    asp_real p = aspi_finite(R(0.25) * D / (sigma_i < ASP_SMALLEST ? ASP_SMALLEST : sigma_i));
+    asp_real p = aspi_finite(R(0.25) * D / (sigma_i + ASP_SMALLEST));
     return ci <= R(0.0) ? R(0.0) : p;
 }
 
@@ -160,13 +166,13 @@ ASP_FN asp_real aspi_hidden(const asp_shape *k, asp_v3 w, asp_real sigma_below, 
     return mask & ASP_MASK_WALL ? wall : bound;
 }
 
-/* G2 / (cos_i cos_o) of two directions above the horizon; si, so are masked areas, mz and c the
+/* G2 / (cos_i cos_o) of two directions above the horizon as .x/.y; si, so are masked areas, mz and c the
  * cosines of m to the normal and to wi (= to wo in reflection).
  *   correlated    1/(si co + so ci - ci co)
  *   uncorrelated  1/(si so)
  *   V-cavity      min(1, 2 mz ci/c, 2 mz co/c) / (ci co)      (Torrance, Sparrow 1967) */
-ASP_FN asp_real aspi_joint(asp_real ci, asp_real co, asp_real si, asp_real so, asp_real mz,
-                           asp_real c_i, asp_real c_o, int mask)
+ASP_FN asp_v2 aspi_joint_ratio(asp_real ci, asp_real co, asp_real si, asp_real so, asp_real mz,
+                               asp_real c_i, asp_real c_o, int mask)
 {
     asp_real both = ci * co;
     asp_real correlated = si * co + (so - co) * ci;
@@ -178,7 +184,16 @@ ASP_FN asp_real aspi_joint(asp_real ci, asp_real co, asp_real si, asp_real so, a
     int cavity = (mask & 15) == ASP_MASK_V_CAVITY;
     asp_real smith = (mask & 15) == ASP_MASK_UNCORRELATED ? uncorrelated : correlated;
     asp_real over = cavity ? (closed ? groove : both) : smith;
-    asp_real top = cavity && closed ? open : R(1.0);
-    return top / (over < ASP_SMALLEST ? ASP_SMALLEST : over);
+    asp_v2 out;
+    out.x = cavity && closed ? open : R(1.0);
+    out.y = aspi_abs(over) + ASP_SMALLEST;
+    return out;
+}
+
+ASP_FN asp_real aspi_joint(asp_real ci, asp_real co, asp_real si, asp_real so, asp_real mz,
+                           asp_real c_i, asp_real c_o, int mask)
+{
+    asp_v2 J = aspi_joint_ratio(ci, co, si, so, mz, c_i, c_o, mask);
+    return J.x / J.y;
 }
 #endif

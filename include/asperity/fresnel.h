@@ -8,7 +8,6 @@
 #define aspi_fresnel_dielectric ASP_NAME(aspi_fresnel_dielectric)
 #define aspi_fresnel_conductor ASP_NAME(aspi_fresnel_conductor)
 #define aspi_conductor_ratio ASP_NAME(aspi_conductor_ratio)
-#define aspi_metal_ratios ASP_NAME(aspi_metal_ratios)
 #define aspi_fresnel_conductor_at ASP_NAME(aspi_fresnel_conductor_at)
 #define aspi_fresnel_schlick ASP_NAME(aspi_fresnel_schlick)
 #define aspi_fresnel_f82 ASP_NAME(aspi_fresnel_f82)
@@ -45,16 +44,16 @@ ASP_FN asp_real aspi_fresnel_dielectric(asp_real cosine, asp_real eta)
     return g2 < R(0.0) ? R(1.0) : f;
 }
 
-/* Unpolarised reflectance of eta + i k, c in [0, 1]: Rs = (t1 - t2)/(t1 + t2), Rp = Rs (t3 - t4)/(t3 + t4),
- * and their mean .x/.y. */
-ASP_FN asp_v2 aspi_conductor_ratio(asp_real c, asp_real eta, asp_real k)
+/* Unpolarised reflectance of eta + i k at the squared cosine c2: Rs = (t1 - t2)/(t1 + t2),
+ * Rp = Rs (t3 - t4)/(t3 + t4), and their mean .x/.y. */
+ASP_FN asp_v2 aspi_conductor_ratio(asp_real c2, asp_real eta, asp_real k)
 {
-    asp_real c2 = c * c, s2 = R(1.0) - c2;
+    asp_real s2 = R(1.0) - c2;
     asp_real eta2 = eta * eta, k2 = k * k;
     asp_real t0 = eta2 - k2 - s2;
     asp_real m = aspi_sqrt(t0 * t0 + R(4.0) * eta2 * k2);
-    asp_real twice = R(2.0) * (m + t0);
-    asp_real t1 = m + c2, t2 = aspi_sqrt(twice < R(0.0) ? R(0.0) : twice) * c;
+    asp_real twice = (m + t0) * (c2 + c2);
+    asp_real t1 = m + c2, t2 = aspi_sqrt(twice < R(0.0) ? R(0.0) : twice);
     asp_real t3 = c2 * m + s2 * s2, t4 = t2 * s2;
     asp_v2 out;
     out.x = (t1 - t2) * t3;
@@ -62,26 +61,17 @@ ASP_FN asp_v2 aspi_conductor_ratio(asp_real c, asp_real eta, asp_real k)
     return out;
 }
 
-/* `_at`: c is in [0, 1] already. */
-ASP_FN asp_real aspi_fresnel_conductor_at(asp_real c, asp_real eta, asp_real k)
+/* `_at`: c2 is in [0, 1] already. */
+ASP_FN asp_real aspi_fresnel_conductor_at(asp_real c2, asp_real eta, asp_real k)
 {
-    asp_v2 r = aspi_conductor_ratio(c, eta, k);
+    asp_v2 r = aspi_conductor_ratio(c2, eta, k);
     return r.x / (r.y < R(1e-30) ? R(1e-30) : r.y);
-}
-
-/* by x/y of three ratios with one division; for eta and k within [0.01, 100], where the product of the
- * denominators is between 1e-12 and 1e26. */
-ASP_FN void aspi_metal_ratios(asp_v2 r, asp_v2 g, asp_v2 b, asp_real by, asp_real out[3])
-{
-    asp_real rg = r.y * g.y, q = R(1.0) / (rg * b.y), qb = q * b.y;
-    out[0] = by * (r.x * (g.y * qb));
-    out[1] = by * (g.x * (r.y * qb));
-    out[2] = by * (b.x * (rg * q));
 }
 
 ASP_FN asp_real aspi_fresnel_conductor(asp_real cosine, asp_real eta, asp_real k)
 {
-    return aspi_fresnel_conductor_at(aspi_unit_cosine(cosine), eta, k);
+    asp_real c = aspi_unit_cosine(cosine);
+    return aspi_fresnel_conductor_at(c * c, eta, k);
 }
 
 /* Schlick 1994. */

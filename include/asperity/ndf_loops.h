@@ -24,34 +24,9 @@ ASP_FN asp_real ndf_sigma_at(const asp_shape *k, asp_v3 v)
 
 /* ---- seen through the map */
 
-/* A formula of the visible normals may come in two steps too, the first of them without random numbers:
- * ASP_NDF_VISIBLE_STEPS says so. */
-#ifdef ASP_NDF_VISIBLE_STEPS
-ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
-{
-    return ndf_visible_end(k, ndf_visible_begin(k, v), u1, u2);
-}
-#else
-ASP_FN asp_v3 ndf_visible_begin(const asp_shape *k, asp_v3 v)
-{
-    (void)k;
-    return v;
-}
-
-ASP_FN asp_v3 ndf_visible_end(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
-{
-    return ndf_visible(k, v, u1, u2);
-}
-#endif
-
 ASP_FN asp_real ndf_world_density(const asp_shape *k, asp_v3 m)
 {
     return aspi_density_result(k, ndf_density_at(k, aspi_facet(k, m)), m.z);
-}
-
-ASP_FN asp_v3 ndf_world_visible(const asp_shape *k, asp_v3 w, asp_real u1, asp_real u2)
-{
-    return aspi_normalize(aspi_facet_back(k, ndf_visible(k, aspi_view(k, w), u1, u2)));
 }
 
 ASP_FN asp_v3 ndf_world_normal(const asp_shape *k, asp_real u1, asp_real u2)
@@ -59,11 +34,17 @@ ASP_FN asp_v3 ndf_world_normal(const asp_shape *k, asp_real u1, asp_real u2)
     return aspi_normalize(aspi_facet_back(k, ndf_normal(k, u1, u2)));
 }
 
-/* For directions above the mean plane, v.z >= 0, sigma may be simpler: a formula that then has ndf_sigma's
- * bits is ndf_sigma_up, and ASP_NDF_SIGMA_UP says that there is one. */
-#ifdef ASP_NDF_SIGMA_UP
+/* Where ASP_NDF_UP says so the visible normals come in two steps, the first of them, ndf_aim, without random
+ * numbers, and for directions above the mean plane, v.z >= 0, there are simpler forms with the same bits,
+ * ndf_aim_up and ndf_sigma_up; ndf_aim_below mends a block in which a direction lies below. */
+#ifdef ASP_NDF_UP
 #define NDF_ANY_BELOW(bits) ((bits) >> (8 * sizeof(bits) - 1))
 #define NDF_NOTE(bits, more) ((bits) |= (more))
+ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+{
+    return ndf_aimed(k, ndf_aim(k, v), u1, u2);
+}
+
 ASP_FN asp_real ndf_sigma_up_at(const asp_shape *k, asp_v3 v)
 {
     return ndf_sigma_up(k, v.z, aspi_length2(v));
@@ -71,42 +52,74 @@ ASP_FN asp_real ndf_sigma_up_at(const asp_shape *k, asp_v3 v)
 #else
 #define NDF_ANY_BELOW(bits) ((void)(bits), 0)
 #define NDF_NOTE(bits, more) ((void)(more))
+ASP_FN aspi_aimed ndf_aim_up(const asp_shape *k, asp_v3 v)
+{
+    aspi_aimed a;
+    (void)k;
+    a.x = v.x;
+    a.y = v.y;
+    a.z = v.z;
+    a.w = R(0.0);
+    return a;
+}
+
+ASP_FN asp_v3 ndf_aimed(const asp_shape *k, aspi_aimed a, asp_real u1, asp_real u2)
+{
+    return ndf_visible(k, aspi_vector(a.x, a.y, a.z), u1, u2);
+}
+
+ASP_FN void ndf_aim_below(const asp_shape *k, size_t n, const asp_real *wx, const asp_real *wy, const asp_real *wz,
+                      asp_real *sigma, asp_real *z)
+{
+    (void)k, (void)n, (void)wx, (void)wy, (void)wz, (void)sigma, (void)z;
+}
+
 ASP_FN asp_real ndf_sigma_up_at(const asp_shape *k, asp_v3 v) { return ndf_sigma_at(k, v); }
 #endif
 
+ASP_FN asp_v3 ndf_world_visible(const asp_shape *k, asp_v3 w, asp_real u1, asp_real u2)
+{
+    return aspi_normalize(aspi_facet_back(k, ndf_visible(k, aspi_view(k, w), u1, u2)));
+}
+
 /* A reflection in steps, which loops take one by one: short loops let the processor overlap several
- * elements. What stands between the steps is the facet drawn, m: the standard surface's as ndf_visible gave
- * it, of which D is simpler, made as long as its world's unit normal `back`; or where the visible normals
- * come from stages of their own the unit normal that they give, twice. */
-ASP_FN void ndf_unit(const asp_shape *k, asp_v3 *m, asp_v3 *back)
+ * elements. The facet drawn is m of the standard surface, as long as ndf_visible made it; `back` in the world,
+ * of squared length 1/q. Nothing is made a unit vector: D is homogeneous, and the rest needs squares only.
+ * Where the visible normals come from stages of their own both are the unit normal of the world, q is 1. */
+/* The density of the mirrored direction. One that is a quotient, 1/ndf_density_over, saves a division. */
+ASP_FN asp_real ndf_lobe(const asp_shape *k, asp_real ci, asp_v3 m, asp_real q, asp_real sigma_i)
 {
 #ifdef ASP_OWN_VISIBLE_N
-    (void)k;
-    *back = *m;
+    (void)q;
+    return aspi_lobe_density(ci, ndf_world_density(k, m), sigma_i);
 #else
-    asp_real scale;
-    *back = aspi_facet_back(k, *m);
-    scale = R(1.0) / aspi_sqrt(aspi_max(aspi_dot(*back, *back), ASP_TINY));
-    back->x = back->x * scale;
-    back->y = back->y * scale;
-    back->z = back->z * scale;
-    m->x = m->x * scale;
-    m->y = m->y * scale;
-    m->z = back->z;
+    asp_real steep = m.z * m.z * q - ASP_FLAT * ASP_FLAT;
+#if defined(ASP_NDF_DENSITY_OVER)
+    asp_real over = ndf_density_over(k, aspi_length2(m) * q, m.z * m.z * q) * sigma_i;
+    /* at most 1e16 over 1e-19: nothing to cut */
+    asp_real p = R(0.25) * k->inv_det / (over + ASP_SMALLEST);
+    return aspi_min(ci, steep) <= R(0.0) ? R(0.0) : p;
+#elif defined(ASP_NDF_PLANAR)
+    asp_real scale = aspi_sqrt(q);
+    asp_v3 unit = aspi_vector(m.x * scale, m.y * scale, m.z * scale);
+    return aspi_lobe_density(aspi_min(ci, steep), aspi_finite(ndf_density(k, unit) * k->inv_det), sigma_i);
+#else
+    asp_real D = ndf_density(k, aspi_length2(m) * q, m.z * m.z * q);
+    return aspi_lobe_density(aspi_min(ci, steep), aspi_finite(D * k->inv_det), sigma_i);
+#endif
 #endif
 }
 
-/* The density of the mirrored direction. One that is a quotient, 1/ndf_density_over, saves a division. */
-ASP_FN asp_real ndf_lobe(const asp_shape *k, asp_real ci, asp_v3 m, asp_real sigma_i)
+/* 2 wi.m m - wi, and the squares of m's height and cosine. */
+ASP_FN asp_v3 ndf_mirror(asp_v3 wi, asp_v3 back, asp_real q, asp_real *m_z2, asp_real *cosine2)
 {
-#ifdef ASP_OWN_VISIBLE_N
-    return aspi_lobe_density(ci, ndf_world_density(k, m), sigma_i);
-#elif defined(ASP_NDF_DENSITY_OVER)
-    asp_real over = ndf_density_over(k, aspi_length2(m), m.z * m.z) * sigma_i;
-    return aspi_lobe_density(m.z <= ASP_FLAT ? R(0.0) : ci, k->inv_det, over);
-#else
-    return aspi_lobe_density(ci, aspi_density_result(k, ndf_density_at(k, m), m.z), sigma_i);
-#endif
+    asp_real d = aspi_dot(wi, back), by = R(2.0) * d * q;
+    *m_z2 = back.z * back.z * q;
+    *cosine2 = d * aspi_abs(d) * q;
+    back.x = by * back.x - wi.x;
+    back.y = by * back.y - wi.y;
+    back.z = by * back.z - wi.z;
+    return back;
 }
 
 /* ---- single calls */
@@ -143,20 +156,20 @@ ASP_CLONES_SINGLE static void ndf_reflect_1(const asp_shape *k, asp_real wx, asp
                                             asp_real u1, asp_real u2, asp_mirrored *out)
 {
     asp_v3 wi = aspi_vector(wx, wy, wz), v = aspi_view(k, wi), m, back, wo;
+    asp_real q = R(1.0);
 #ifdef ASP_OWN_VISIBLE_N
-    m = ndf_world_visible(k, wi, u1, u2);
+    m = back = ndf_world_visible(k, wi, u1, u2);
 #else
     m = ndf_visible(k, v, u1, u2);
+    back = aspi_facet_back(k, m);
+    q = R(1.0) / aspi_max(aspi_dot(back, back), ASP_TINY);
 #endif
-    ndf_unit(k, &m, &back);
-    wo = aspi_reflect(wi, back);
+    wo = ndf_mirror(wi, back, q, &out->m_z2, &out->cosine2);
     out->wo_x = wo.x;
     out->wo_y = wo.y;
     out->wo_z = wo.z;
-    out->m_z = back.z;
-    out->cosine = aspi_dot(wi, back);
     out->sigma_i = ndf_sigma_at(k, v);
-    out->pdf = ndf_lobe(k, wi.z, m, out->sigma_i);
+    out->pdf = ndf_lobe(k, wi.z, m, q, out->sigma_i);
     out->sigma_o = ndf_sigma_at(k, aspi_view(k, wo));
 }
 
@@ -218,12 +231,6 @@ ASP_CLONES static void ndf_normal_n(const asp_shape *k, size_t n, const asp_real
     }
 }
 
-#ifdef ASP_OWN_VISIBLE_N
-#define NDF_LOBE(i) aspi_lobe_density(wz[i], p[i], si[i])
-#else
-#define NDF_LOBE(i) ndf_lobe(k, wz[i], aspi_vector(x[i], y[i], z[i]), si[i])
-#endif
-
 /* The sign bits tell whether any direction that matters lies below the mean plane: a wo that points down
  * carries no weight. */
 ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT wx,
@@ -233,47 +240,52 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
                                      const asp_real *ASP_RESTRICT u2, const asp_mirrored_s *out)
 {
     asp_real *ASP_RESTRICT ox = out->wo_x, *ASP_RESTRICT oy = out->wo_y, *ASP_RESTRICT oz = out->wo_z;
-    asp_real *ASP_RESTRICT mz = out->m_z, *ASP_RESTRICT c = out->cosine, *ASP_RESTRICT p = out->pdf;
+    asp_real *ASP_RESTRICT mz2 = out->m_z2, *ASP_RESTRICT c2 = out->cosine2, *ASP_RESTRICT p = out->pdf;
     asp_real *ASP_RESTRICT si = out->sigma_i, *ASP_RESTRICT so = out->sigma_o;
-    asp_real bx[ASP_BLOCK], by[ASP_BLOCK];
+    asp_real bx[ASP_BLOCK], by[ASP_BLOCK], z[ASP_BLOCK];
     asp_bits below = 0;
     size_t i;
 #ifndef ASP_OWN_VISIBLE_N
-    asp_real x[ASP_BLOCK], y[ASP_BLOCK], z[ASP_BLOCK];
+    asp_real x[ASP_BLOCK], y[ASP_BLOCK], q[ASP_BLOCK];
     for (i = 0; i < n; i++) {
         asp_v3 v = aspi_view(k, aspi_vector(wx[i], wy[i], wz[i]));
-        asp_v3 m = ndf_visible_begin(k, v);
+        aspi_aimed a = ndf_aim_up(k, v);
         si[i] = ndf_sigma_up_at(k, v);
         NDF_NOTE(below, aspi_to_bits(v.z));
-        x[i] = m.x;
-        y[i] = m.y;
-        z[i] = m.z;
+        x[i] = a.x;
+        y[i] = a.y;
+        z[i] = a.z;
+        q[i] = a.w;
     }
     if (NDF_ANY_BELOW(below))
-        ndf_sigma_n(k, n, R(1.0), wx, wy, wz, si);
+        ndf_aim_below(k, n, wx, wy, wz, si, z);
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
-        asp_v3 m = ndf_visible_end(k, aspi_vector(x[i], y[i], z[i]), u1[i], u2[i]);
+        aspi_aimed a;
+        asp_v3 m;
+        a.x = x[i];
+        a.y = y[i];
+        a.z = z[i];
+        a.w = q[i];
+        m = ndf_aimed(k, a, u1[i], u2[i]);
         x[i] = m.x;
         y[i] = m.y;
         z[i] = m.z;
     }
-    ASP_IN_PLACE
     for (i = 0; i < n; i++) {
-        asp_v3 m = aspi_vector(x[i], y[i], z[i]), back;
-        ndf_unit(k, &m, &back);
-        x[i] = m.x;
-        y[i] = m.y;
-        z[i] = m.z;
+        asp_v3 back = aspi_facet_back(k, aspi_vector(x[i], y[i], z[i]));
         bx[i] = back.x;
         by[i] = back.y;
-        mz[i] = back.z;
+        q[i] = R(1.0) / aspi_max(aspi_dot(back, back), ASP_TINY);
     }
-#endif
-#ifdef ASP_OWN_VISIBLE_N
-    ndf_visible_n(k, n, wx, wy, wz, u1, u2, bx, by, mz);
+#define NDF_Q(i) q[i]
+#define NDF_LOBE(i) ndf_lobe(k, wz[i], aspi_vector(x[i], y[i], z[i]), q[i], si[i])
+#else
+    ndf_visible_n(k, n, wx, wy, wz, u1, u2, bx, by, z);
     ndf_sigma_n(k, n, R(1.0), wx, wy, wz, si);
-    ndf_density_n(k, n, bx, by, mz, p);
+    ndf_density_n(k, n, bx, by, z, p);
+#define NDF_Q(i) R(1.0)
+#define NDF_LOBE(i) aspi_lobe_density(wz[i], p[i], si[i])
 #endif
     ASP_IN_PLACE
     for (i = 0; i < n; i++)
@@ -281,9 +293,8 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
     below = 0;
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
-        asp_v3 wi = aspi_vector(wx[i], wy[i], wz[i]), back = aspi_vector(bx[i], by[i], mz[i]), v;
-        asp_v3 wo = aspi_reflect(wi, back);
-        c[i] = aspi_dot(wi, back);
+        asp_v3 wo = ndf_mirror(aspi_vector(wx[i], wy[i], wz[i]), aspi_vector(bx[i], by[i], z[i]), NDF_Q(i),
+                               &mz2[i], &c2[i]), v;
         ox[i] = wo.x;
         oy[i] = wo.y;
         oz[i] = wo.z;
@@ -301,9 +312,10 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
     ndf_sigma_n(k, n, R(1.0), ox, oy, oz, so);
 #endif
 }
-#undef NDF_ANY_BELOW
-#undef ASP_OWN_DENSITY_N
-#undef NDF_NOTE
+#undef NDF_Q
 #undef NDF_LOBE
+#undef NDF_ANY_BELOW
+#undef NDF_NOTE
+#undef ASP_OWN_DENSITY_N
 #undef ASP_OWN_SIGMA_N
 #undef ASP_OWN_VISIBLE_N

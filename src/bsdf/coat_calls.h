@@ -14,7 +14,7 @@ ASP_FN asp_real coat_lobe(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real F[3
     const asp_shape *k = &mat->ndf;
     asp_v3 m = aspi_half_vector(wi, wo);
     asp_real c = aspi_dot(wi, m), D = ASPI_CALL(asp_D)(k, m), si = ASPI_CALL(asp_sigma)(k, wi);
-    aspi_fresnel(mat, c, R(1.0), F);
+    aspi_fresnel(mat, c * aspi_abs(c), R(1.0), R(1.0), F);
     *pdf = aspi_lobe_density(wi.z, D, si);
     return aspi_facet_part(k, wi, wo, m.z, c, si, ASPI_CALL(asp_sigma)(k, wo), R(0.25) * D, mat->mask);
 }

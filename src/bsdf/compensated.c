@@ -25,7 +25,7 @@ static void fresnel_mean(const asp_material *mat, double mean[3])
     mean[0] = mean[1] = mean[2] = 0.0;
     for (i = 0; i <= n; i++) {
         double c = (double)i / n, F[3], w = i == 0 || i == n ? 1.0 : i & 1 ? 4.0 : 2.0;
-        aspi_fresnel_64(mat, c, 1.0, F);
+        aspi_fresnel_64(mat, c * c, 1.0, 1.0, F);
         for (k = 0; k < 3; k++)
             mean[k] += 2.0 * c * F[k] * w / (3.0 * n);
     }
@@ -45,7 +45,7 @@ static asp_status compensated_prepare(asp_material *out, asp_error *err)
     for (k = 0; k < 3; k++)
         colour[k] = F[k] * F[k] * E / (1.0 - F[k] * (1.0 - E)) / (ASP_PI * aspi_max_64(1.0 - E, 1e-12));
     if (out->b.r == COMPENSATED_TURQUIN)
-        aspi_fresnel_64(out, 1.0, 1.0, colour);
+        aspi_fresnel_64(out, 1.0, 1.0, 1.0, colour);
     out->a.r = colour[0];
     out->a.g = colour[1];
     out->a.b = colour[2];

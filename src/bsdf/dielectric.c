@@ -183,7 +183,8 @@ ASP_FN asp_real refracted_masking(const asp_shape *shape, const case_of *k, asp_
 /* G2 / (ci co) of a reflection. */
 ASP_FN asp_real joint_reflected(const asp_shape *shape, const case_of *k, asp_real sigma_o, int mask)
 {
-    return aspi_reflected_joint(shape, k->wi, k->wo, k->m.z, k->c, k->sigma_i, sigma_o, mask);
+    asp_real si = aspi_masked(shape, k->wi, k->sigma_i, mask), so = aspi_masked(shape, k->wo, sigma_o, mask);
+    return aspi_joint(k->wi.z, k->wo.z, si, so, k->m.z, k->c, k->c, mask);
 }
 
 ASP_FN asp_real crossing_scale(const asp_mat *mat, const case_of *k)

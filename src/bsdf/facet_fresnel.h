@@ -1,5 +1,6 @@
 /* facet_fresnel.h - the Fresnel term of a material, in both precisions */
 
+#include "asperity/facet.h"
 #include "asperity/fresnel.h"
 #include "bsdf/cubic.h"
 #include "bsdf/energy.h"
@@ -32,12 +33,11 @@ ASP_FN asp_real aspi_fresnel_film(const asp_real *f, asp_real c)
 }
 
 /* The metal's three channels side by side, which the compiler makes one vector of four. */
-ASP_FN void aspi_fresnel_metal(const asp_mat *mat, asp_real c, asp_real by, asp_real F[3])
+ASP_FN void aspi_fresnel_metal(const asp_mat *mat, asp_real c2, asp_real by, asp_real over, asp_real F[3])
 {
-    asp_real unit = aspi_unit_cosine(c), x[4], y[4];
-    asp_real eta[4], k[4];
-    asp_v2 r, g, b;
+    asp_real eta[4], k[4], f[4];
     int i;
+    c2 = aspi_abs(c2);
     eta[0] = mat->c.r;
     eta[1] = mat->c.g;
     eta[2] = eta[3] = mat->c.b;
@@ -45,34 +45,31 @@ ASP_FN void aspi_fresnel_metal(const asp_mat *mat, asp_real c, asp_real by, asp_
     k[1] = mat->d.g;
     k[2] = k[3] = mat->d.b;
     for (i = 0; i < 4; i++) {
-        asp_v2 ratio = aspi_conductor_ratio(unit, eta[i], k[i]);
-        x[i] = ratio.x;
-        y[i] = ratio.y;
+        asp_v2 ratio = aspi_conductor_ratio(c2, eta[i], k[i]);
+        f[i] = aspi_finite((ratio.x * by) / (ratio.y * over));
     }
-    r.x = x[0];
-    r.y = y[0];
-    g.x = x[1];
-    g.y = y[1];
-    b.x = x[2];
-    b.y = y[2];
-    aspi_metal_ratios(r, g, b, by, F);
+    F[0] = f[0];
+    F[1] = f[1];
+    F[2] = f[2];
 }
 
-/* The Fresnel term at the cosine c, times `by`. Numbers go by pointer: small structs of floats stall in
- * the usual calling convention. */
-ASP_FN void aspi_fresnel(const asp_mat *mat, asp_real c, asp_real by, asp_real F[3])
+/* The Fresnel term at the squared cosine c2 (with its sign; by is 0 where it is negative), times by/over. Numbers go by pointer: small structs of floats stall
+ * in the usual calling convention. */
+ASP_FN void aspi_fresnel(const asp_mat *mat, asp_real c2, asp_real by, asp_real over, asp_real F[3])
 {
-    asp_real unit;
+    asp_real c;
     if (mat->fresnel == ASPI_FRESNEL_METAL) {
-        aspi_fresnel_metal(mat, c, by, F);
+        aspi_fresnel_metal(mat, c2, by, over, F);
         return;
     }
-    unit = aspi_unit_cosine(c);
+    by = aspi_finite(by / over);
+    c2 = aspi_unit_cosine(c2);
+    c = aspi_sqrt(c2);
     switch (mat->fresnel) {
     case ASPI_FRESNEL_CONDUCTOR:
-        F[0] = aspi_fresnel_conductor_at(unit, mat->c.r, mat->d.r);
-        F[1] = aspi_fresnel_conductor_at(unit, mat->c.g, mat->d.g);
-        F[2] = aspi_fresnel_conductor_at(unit, mat->c.b, mat->d.b);
+        F[0] = aspi_fresnel_conductor_at(c2, mat->c.r, mat->d.r);
+        F[1] = aspi_fresnel_conductor_at(c2, mat->c.g, mat->d.g);
+        F[2] = aspi_fresnel_conductor_at(c2, mat->c.b, mat->d.b);
         break;
     case ASPI_FRESNEL_F82:
         F[0] = aspi_fresnel_f82(c, mat->c.r, mat->d.r);

@@ -14,10 +14,8 @@
 #define aspi_half_vector ASP_NAME(aspi_half_vector)
 #define aspi_cosine_lobe ASP_NAME(aspi_cosine_lobe)
 #define aspi_lobe_around ASP_NAME(aspi_lobe_around)
-#define aspi_reflected_joint ASP_NAME(aspi_reflected_joint)
-#define aspi_lit ASP_NAME(aspi_lit)
+#define aspi_reflected ASP_NAME(aspi_reflected)
 #define aspi_facet_part ASP_NAME(aspi_facet_part)
-#define aspi_facet_weight ASP_NAME(aspi_facet_weight)
 #define aspi_mixed_density ASP_NAME(aspi_mixed_density)
 #endif
 
@@ -66,35 +64,25 @@ ASP_FN asp_v3 aspi_cosine_lobe(asp_v3 wi, asp_real u1, asp_real u2)
     return aspi_lobe_around(wi, u1, R(1.0) - u1, u2);
 }
 
-/* J of a reflection. */
-ASP_FN asp_real aspi_reflected_joint(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c,
-                                     asp_real sigma_i, asp_real sigma_o, int mask)
+/* `by` J of a reflection as .x/.y; 0 where a direction is below the horizon. The facet is given by the squares
+ * of its cosines to the normal and to wi, with their signs. */
+ASP_FN asp_v2 aspi_reflected(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_real mz2, asp_real c2,
+                             asp_real sigma_i, asp_real sigma_o, asp_real by, int mask)
 {
     asp_real si = aspi_masked(k, wi, sigma_i, mask), so = aspi_masked(k, wo, sigma_o, mask);
-    return aspi_joint(wi.z, wo.z, si, so, mz, c, c, mask);
+    asp_real c = aspi_sqrt(aspi_above(c2));
+    asp_real dark = aspi_min(aspi_min(wi.z, wo.z), aspi_min(c2, mz2));
+    asp_v2 out = aspi_joint_ratio(wi.z, wo.z, si, so, aspi_sqrt(aspi_above(mz2)), c, c, mask);
+    out.x = dark <= R(0.0) ? R(0.0) : by * out.x;
+    return out;
 }
 
-/* x, 0 where a direction is below the horizon. */
-ASP_FN asp_real aspi_lit(asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c, asp_real x)
-{
-    asp_real dark = aspi_min(aspi_min(wi.z, wo.z), aspi_min(c, mz));
-    return dark <= R(0.0) ? R(0.0) : x;
-}
-
-/* `scale` J; scale is D/4 for f. */
+/* The same for the facet m, as a number; `by` is D/4 for f. */
 ASP_FN asp_real aspi_facet_part(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c,
-                           asp_real sigma_i, asp_real sigma_o, asp_real scale, int mask)
+                                asp_real sigma_i, asp_real sigma_o, asp_real by, int mask)
 {
-    asp_real J = aspi_reflected_joint(k, wi, wo, mz, c, sigma_i, sigma_o, mask);
-    return aspi_lit(wi, wo, mz, c, aspi_finite(scale * J));
-}
-
-/* The weight of visible normals but for F, sigma_i cos_o J; no more than 1 or, of V-cavities, sigma_i/cos_i. */
-ASP_FN asp_real aspi_facet_weight(const asp_shape *k, asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c,
-                             asp_real sigma_i, asp_real sigma_o, int mask)
-{
-    asp_real J = aspi_reflected_joint(k, wi, wo, mz, c, sigma_i, sigma_o, mask);
-    return aspi_lit(wi, wo, mz, c, sigma_i * wo.z * J);
+    asp_v2 J = aspi_reflected(k, wi, wo, mz * aspi_abs(mz), c * aspi_abs(c), sigma_i, sigma_o, by, mask);
+    return aspi_finite(J.x / J.y);
 }
 
 ASP_FN asp_real aspi_mixed_density(asp_real ci, asp_real co, asp_real lobe, asp_real share)

@@ -24,7 +24,7 @@
 #define share_of ASP_NAME(share_of)
 #define eval_scaled ASP_NAME(eval_scaled)
 #define density_of ASP_NAME(density_of)
-#define facet_part ASP_NAME(facet_part)
+#define lit_part ASP_NAME(lit_part)
 #define sigma_of ASP_NAME(sigma_of)
 #define sample_pure ASP_NAME(sample_pure)
 #define sample_mixed ASP_NAME(sample_mixed)
@@ -39,19 +39,19 @@
 #endif
 #endif
 
-/* The model's value from the Fresnel term at c. */
-ASP_FN void value_of(const asp_mat *mat, asp_real c, asp_real x, asp_real y, asp_c3 *out)
+/* The model's value from the Fresnel term at the squared cosine c2; x.x/x.y multiplies what comes from facets. */
+ASP_FN void value_of(const asp_mat *mat, asp_real c2, asp_v2 x, asp_real y, asp_c3 *out)
 {
     asp_real F[3];
     if (!mat->model->ASPI_CALL(value)) {
-        aspi_fresnel(mat, c, x, F);
+        aspi_fresnel(mat, c2, x.x, x.y, F);
         out->r = F[0];
         out->g = F[1];
         out->b = F[2];
         return;
     }
-    aspi_fresnel(mat, c, R(1.0), F);
-    mat->model->ASPI_CALL(value)(mat, F[0], F[1], F[2], x, y, out);
+    aspi_fresnel(mat, c2, R(1.0), R(1.0), F);
+    mat->model->ASPI_CALL(value)(mat, F[0], F[1], F[2], aspi_finite(x.x / x.y), y, out);
 }
 
 /* ---- single calls */
@@ -67,13 +67,13 @@ ASP_FN asp_real sigma_of(const asp_shape *k, asp_v3 w)
     return ASPI_OPS(k).sigma(k, w.x, w.y, w.z);
 }
 
-/* aspi_facet_part; a constant mask spares the default the others' arithmetic. */
-ASP_FN asp_real facet_part(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real mz, asp_real c,
-                           asp_real sigma_i, asp_real sigma_o, asp_real scale)
+/* aspi_reflected; a constant mask spares the default the others' arithmetic. */
+ASP_FN asp_v2 lit_part(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real mz2, asp_real c2,
+                       asp_real sigma_i, asp_real sigma_o, asp_real by)
 {
     return mat->mask == 0
-         ? aspi_facet_part(&mat->ndf, wi, wo, mz, c, sigma_i, sigma_o, scale, 0)
-         : aspi_facet_part(&mat->ndf, wi, wo, mz, c, sigma_i, sigma_o, scale, mat->mask);
+         ? aspi_reflected(&mat->ndf, wi, wo, mz2, c2, sigma_i, sigma_o, by, 0)
+         : aspi_reflected(&mat->ndf, wi, wo, mz2, c2, sigma_i, sigma_o, by, mat->mask);
 }
 
 static asp_real share_of(const asp_mat *mat, asp_real ci)
@@ -81,21 +81,20 @@ static asp_real share_of(const asp_mat *mat, asp_real ci)
     asp_real F[3];
     if (!mat->model->mixed)
         return R(1.0);
-    aspi_fresnel(mat, ci, R(1.0), F);
+    aspi_fresnel(mat, ci * aspi_abs(ci), R(1.0), R(1.0), F);
     return mat->model->ASPI_CALL(share)(mat, F);
 }
 
 /* f times by, where `by` is 1 or a cosine. */
-ASP_FN asp_c3 eval_scaled(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real by)
+ASP_CLONES_SINGLE static asp_c3 eval_scaled(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real by)
 {
     const asp_shape *k = &mat->ndf;
     asp_v3 m = aspi_half_vector(wi, wo);
-    asp_real c = aspi_dot(wi, m);
-    asp_real D = density_of(k, m);
-    asp_real x = facet_part(mat, wi, wo, m.z, c, sigma_of(k, wi), sigma_of(k, wo), R(0.25) * D);
+    asp_real D = density_of(k, m), sigma_i = sigma_of(k, wi), sigma_o = sigma_of(k, wo);
+    asp_real c = aspi_dot(wi, m), c2 = c * aspi_abs(c), mz2 = m.z * aspi_abs(m.z);
     asp_real y = aspi_min(wi.z, wo.z) <= R(0.0) ? R(0.0) : by;
     asp_c3 out;
-    value_of(mat, c, x * y, y, &out);
+    value_of(mat, c2, lit_part(mat, wi, wo, mz2, c2, sigma_i, sigma_o, R(0.25) * D * y), y, &out);
     return out;
 }
 
@@ -129,22 +128,20 @@ asp_real ASPI_CALL(asp_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 }
 
 /* Visible normals only: D cancels in the weight, which is F J sigma_i cos_o. */
-ASP_FN asp_real reflected(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_mirrored *s)
+ASP_FN asp_v2 reflected(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_mirrored *s)
 {
-    asp_v3 wo;
     ASPI_OPS(&mat->ndf).reflect(&mat->ndf, wi.x, wi.y, wi.z, u1, u2, s);
-    wo = aspi_vector(s->wo_x, s->wo_y, s->wo_z);
-    return mat->mask == 0 /* as in facet_part */
-         ? aspi_facet_weight(&mat->ndf, wi, wo, s->m_z, s->cosine, s->sigma_i, s->sigma_o, 0)
-         : aspi_facet_weight(&mat->ndf, wi, wo, s->m_z, s->cosine, s->sigma_i, s->sigma_o, mat->mask);
+    return lit_part(mat, wi, aspi_vector(s->wo_x, s->wo_y, s->wo_z), s->m_z2, s->cosine2, s->sigma_i, s->sigma_o,
+                    s->sigma_i * s->wo_z);
 }
 
 ASP_CLONES_SINGLE static asp_sampled sample_pure(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
 {
     asp_sampled out;
     asp_mirrored s;
-    asp_real x = reflected(mat, wi, u1, u2, &s), F[3];
-    aspi_fresnel(mat, s.cosine, x, F);
+    asp_v2 x = reflected(mat, wi, u1, u2, &s);
+    asp_real F[3];
+    aspi_fresnel(mat, s.cosine2, x.x, x.y, F);
     out.wo.x = s.wo_x;
     out.wo.y = s.wo_y;
     out.wo.z = s.wo_z;
@@ -160,9 +157,9 @@ static asp_sampled sample_value(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_
 {
     asp_sampled out;
     asp_mirrored s;
-    asp_real x = reflected(mat, wi, u1, u2, &s);
+    asp_v2 x = reflected(mat, wi, u1, u2, &s);
     asp_c3 weight;
-    value_of(mat, s.cosine, x, x, &weight);
+    value_of(mat, s.cosine2, x, x.x / x.y, &weight);
     out.wo = aspi_vector(s.wo_x, s.wo_y, s.wo_z);
     out.pdf = s.pdf;
     out.weight = weight;
@@ -174,7 +171,7 @@ static asp_sampled sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_
 {
     asp_sampled out;
     const asp_shape *k = &mat->ndf;
-    asp_real sigma_i = sigma_of(k, wi), share = share_of(mat, wi.z), c, D, x, y, scale;
+    asp_real sigma_i = sigma_of(k, wi), share = share_of(mat, wi.z), c, c2, mz2, D, y, scale;
     asp_v3 m;
     int facet = u1 < share;
     u1 = facet ? u1 / share : (u1 - share) / (R(1.0) - share);
@@ -182,13 +179,14 @@ static asp_sampled sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_
     out.wo = facet ? aspi_reflect(wi, m) : aspi_cosine_lobe(wi, u1, u2);
     m = aspi_half_vector(wi, out.wo);
     c = aspi_dot(wi, m);
+    c2 = c * aspi_abs(c);
+    mz2 = m.z * aspi_abs(m.z);
     D = density_of(k, m);
     out.pdf = aspi_mixed_density(wi.z, out.wo.z, aspi_lobe_density(wi.z, D, sigma_i), share);
     y = aspi_min(wi.z, out.wo.z) <= R(0.0) || out.pdf <= R(0.0) ? R(0.0) : out.wo.z / out.pdf;
     scale = out.pdf <= R(0.0) ? R(0.0) : R(0.25) * D / out.pdf;
-    x = aspi_above(out.wo.z)
-      * facet_part(mat, wi, out.wo, m.z, c, sigma_i, sigma_of(k, out.wo), scale);
-    value_of(mat, c, x, y, &out.weight);
+    value_of(mat, c2, lit_part(mat, wi, out.wo, mz2, c2, sigma_i, sigma_of(k, out.wo),
+                               aspi_above(out.wo.z) * scale), y, &out.weight);
     return out;
 }
 

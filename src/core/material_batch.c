@@ -39,6 +39,9 @@
 #define block_value ASP_NAME(block_value)
 #define block_ones ASP_NAME(block_ones)
 #define loop_metal ASP_NAME(loop_metal)
+#define loop_prepare ASP_NAME(loop_prepare)
+#define loop_ratio ASP_NAME(loop_ratio)
+#define loop_square ASP_NAME(loop_square)
 #define loop_one ASP_NAME(loop_one)
 #define loop_film ASP_NAME(loop_film)
 #define loop_conductor ASP_NAME(loop_conductor)
@@ -52,23 +55,26 @@
 /* ---- loops */
 
 ASP_FN void loop_half(size_t n, IN ix, IN iy, IN iz, IN ox, IN oy, IN oz, OUT mx, OUT my,
-                      OUT mz, OUT c)
+                      OUT mz, OUT mz2, OUT c2)
 {
     size_t i;
     for (i = 0; i < n; i++) {
         asp_v3 wi, wo, m;
+        asp_real c;
         wi = aspi_at(ix, iy, iz, i);
         wo = aspi_at(ox, oy, oz, i);
         m = aspi_half_vector(wi, wo);
         mx[i] = m.x;
         my[i] = m.y;
         mz[i] = m.z;
-        c[i] = aspi_dot(wi, m);
+        c = aspi_dot(wi, m);
+        mz2[i] = m.z * aspi_abs(m.z);
+        c2[i] = c * aspi_abs(c);
     }
 }
 
 ASP_FN void loop_reflect(size_t n, IN ix, IN iy, IN iz, IN mx, IN my, IN mz, OUT ox,
-                         OUT oy, OUT oz, OUT c)
+                         OUT oy, OUT oz)
 {
     size_t i;
     for (i = 0; i < n; i++) {
@@ -79,37 +85,40 @@ ASP_FN void loop_reflect(size_t n, IN ix, IN iy, IN iz, IN mx, IN my, IN mz, OUT
         ox[i] = wo.x;
         oy[i] = wo.y;
         oz[i] = wo.z;
-        c[i] = aspi_dot(wi, m);
     }
 }
 
-/* facet_part with scale D/4, times `by` (cosines or ones); y is `by` or 0. */
-ASP_FN void loop_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, asp_cv3s wo,
-                       IN mz, IN c, IN D, IN sigma_i, IN sigma_o, IN by, OUT x, OUT y)
+/* aspi_reflected times D/4 and `by` (cosines or ones); y is `by` or 0. */
+ASP_FN void loop_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, asp_cv3s wo, IN mz2, IN c2, IN D,
+                       IN sigma_i, IN sigma_o, IN by, OUT x, OUT over, OUT y)
 {
     size_t i;
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
         asp_v3 a, b;
-        asp_real part;
+        asp_v2 part;
         a = aspi_at(wi.x, wi.y, wi.z, i);
         b = aspi_at(wo.x, wo.y, wo.z, i);
-        part = aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], R(0.25) * D[i], mask);
         y[i] = aspi_min(a.z, b.z) <= R(0.0) ? R(0.0) : by[i];
-        x[i] = part * y[i];
+        part = aspi_reflected(k, a, b, mz2[i], c2[i], sigma_i[i], sigma_o[i], R(0.25) * D[i] * y[i], mask);
+        x[i] = part.x;
+        over[i] = part.y;
     }
 }
 
-/* The weight but for F. */
-ASP_FN void loop_weights(const asp_shape *k, size_t n, int mask, asp_cv3s wi, IN ox, IN oy, IN oz, IN mz,
-                         IN c, IN sigma_i, IN sigma_o, OUT x)
+/* The weight but for F, as x/over. */
+ASP_FN void loop_weights(const asp_shape *k, size_t n, int mask, asp_cv3s wi, IN ox, IN oy, IN oz, IN mz2,
+                         IN c2, IN sigma_i, IN sigma_o, OUT x, OUT over)
 {
     size_t i;
     for (i = 0; i < n; i++) {
         asp_v3 a, b;
+        asp_v2 part;
         a = aspi_at(wi.x, wi.y, wi.z, i);
         b = aspi_at(ox, oy, oz, i);
-        x[i] = aspi_facet_weight(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], mask);
+        part = aspi_reflected(k, a, b, mz2[i], c2[i], sigma_i[i], sigma_o[i], sigma_i[i] * b.z, mask);
+        x[i] = part.x;
+        over[i] = part.y;
     }
 }
 
@@ -156,14 +165,14 @@ ASP_FN void loop_mixed_direction(size_t n, asp_cv3s wi, IN facet, IN u1, IN u2, 
 }
 
 /* What the facets' and the base's terms are multiplied with to give f cos / pdf. */
-ASP_FN void loop_mixed_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, IN ox,
-                             IN oy, IN oz, IN mz, IN c, IN D, IN sigma_i, IN sigma_o,
-                             IN pdf, OUT x, OUT y)
+ASP_FN void loop_mixed_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi, IN ox, IN oy, IN oz, IN mz2,
+                             IN c2, IN D, IN sigma_i, IN sigma_o, IN pdf, OUT x, OUT over, OUT y)
 {
     size_t i;
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
         asp_v3 a, b;
+        asp_v2 part;
         asp_real p = pdf[i] <= R(0.0) ? R(1.0) : pdf[i], base, scale;
         a = aspi_at(wi.x, wi.y, wi.z, i);
         b = aspi_at(ox, oy, oz, i);
@@ -171,30 +180,50 @@ ASP_FN void loop_mixed_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi
         scale = R(0.25) * D[i] / p;
         y[i] = aspi_min(a.z, b.z) <= R(0.0) || pdf[i] <= R(0.0) ? R(0.0) : base;
         scale = pdf[i] <= R(0.0) ? R(0.0) : scale;
-        x[i] = aspi_above(b.z)
-             * aspi_facet_part(k, a, b, mz[i], c[i], sigma_i[i], sigma_o[i], scale, mask);
+        part = aspi_reflected(k, a, b, mz2[i], c2[i], sigma_i[i], sigma_o[i], aspi_above(b.z) * scale, mask);
+        x[i] = part.x;
+        over[i] = part.y;
     }
 }
 
-ASP_FN void loop_metal(size_t n, asp_c3 eta, asp_c3 kappa, IN c, IN by, OUT r, OUT g, OUT b)
+ASP_FN void loop_metal(size_t n, asp_real eta, asp_real kappa, IN c2, IN by, IN over, OUT F)
 {
     size_t i;
     for (i = 0; i < n; i++) {
-        asp_real unit = aspi_unit_cosine(c[i]), F[3];
-        aspi_metal_ratios(aspi_conductor_ratio(unit, eta.r, kappa.r),
-                          aspi_conductor_ratio(unit, eta.g, kappa.g),
-                          aspi_conductor_ratio(unit, eta.b, kappa.b), by[i], F);
-        r[i] = F[0];
-        g[i] = F[1];
-        b[i] = F[2];
+        asp_v2 ratio = aspi_conductor_ratio(aspi_abs(c2[i]), eta, kappa);
+        F[i] = aspi_finite((ratio.x * by[i]) / (ratio.y * over[i]));
     }
 }
 
-ASP_FN void loop_conductor(size_t n, asp_real eta, asp_real kappa, IN c, IN by, OUT F)
+/* by/over, and the cosine. */
+ASP_FN void loop_prepare(size_t n, IN c2, IN by, IN over, OUT c, OUT x)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        c[i] = aspi_sqrt(aspi_unit_cosine(c2[i]));
+        x[i] = aspi_finite(by[i] / over[i]);
+    }
+}
+
+ASP_FN void loop_ratio(size_t n, IN by, IN over, OUT x)
 {
     size_t i;
     for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_conductor_at(aspi_unit_cosine(c[i]), eta, kappa) * by[i];
+        x[i] = aspi_finite(by[i] / over[i]);
+}
+
+ASP_FN void loop_square(size_t n, IN c, OUT c2)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        c2[i] = c[i] * aspi_abs(c[i]);
+}
+
+ASP_FN void loop_conductor(size_t n, asp_real eta, asp_real kappa, IN c2, IN by, OUT F)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        F[i] = aspi_fresnel_conductor_at(aspi_unit_cosine(c2[i]), eta, kappa) * by[i];
 }
 
 ASP_FN void loop_f82(size_t n, asp_real f0, asp_real tint, IN c, IN by, OUT F)
@@ -227,17 +256,23 @@ ASP_FN void loop_one(size_t n, IN c, IN by, OUT F)
 
 /* ---- blocks */
 
-/* The Fresnel term times `by`. */
-ASP_FN void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c, const asp_real *by, asp_c3s F)
+/* The Fresnel term at the squared cosines c2, times by/over. */
+ASP_FN void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c2, const asp_real *above,
+                          const asp_real *over, asp_c3s F)
 {
+    asp_real c[ASP_BLOCK], by[ASP_BLOCK];
+    if (mat->fresnel == ASPI_FRESNEL_METAL) {
+        loop_metal(n, mat->c.r, mat->d.r, c2, above, over, F.r);
+        loop_metal(n, mat->c.g, mat->d.g, c2, above, over, F.g);
+        loop_metal(n, mat->c.b, mat->d.b, c2, above, over, F.b);
+        return;
+    }
+    loop_prepare(n, c2, above, over, c, by);
     switch (mat->fresnel) {
-    case ASPI_FRESNEL_METAL:
-        loop_metal(n, mat->c, mat->d, c, by, F.r, F.g, F.b);
-        break;
     case ASPI_FRESNEL_CONDUCTOR:
-        loop_conductor(n, mat->c.r, mat->d.r, c, by, F.r);
-        loop_conductor(n, mat->c.g, mat->d.g, c, by, F.g);
-        loop_conductor(n, mat->c.b, mat->d.b, c, by, F.b);
+        loop_conductor(n, mat->c.r, mat->d.r, c2, by, F.r);
+        loop_conductor(n, mat->c.g, mat->d.g, c2, by, F.g);
+        loop_conductor(n, mat->c.b, mat->d.b, c2, by, F.b);
         break;
     case ASPI_FRESNEL_F82:
         loop_f82(n, mat->c.r, mat->d.r, c, by, F.r);
@@ -268,23 +303,24 @@ ASP_FN void block_ones(asp_real ones[ASP_BLOCK])
         ones[i] = R(1.0);
 }
 
-/* The model's value from the Fresnel term at c. */
-ASP_FN void block_value(const asp_mat *mat, size_t n, const asp_real *c, const asp_real *x,
-                        const asp_real *y, asp_c3s out)
+/* The model's value from the Fresnel term at the squared cosines c2; x/over multiplies what comes from facets. */
+ASP_FN void block_value(const asp_mat *mat, size_t n, const asp_real *c2, const asp_real *x,
+                        const asp_real *over, const asp_real *y, asp_c3s out)
 {
-    asp_real ones[ASP_BLOCK];
+    asp_real ones[ASP_BLOCK], part[ASP_BLOCK];
     if (!mat->model->ASPI_CALL(value)) {
-        block_fresnel(mat, n, c, x, out);
+        block_fresnel(mat, n, c2, x, over, out);
         return;
     }
     block_ones(ones);
-    block_fresnel(mat, n, c, ones, out);
-    mat->model->ASPI_CALL(value_n)(mat, n, x, y, out.r, out.g, out.b);
+    block_fresnel(mat, n, c2, ones, ones, out);
+    loop_ratio(n, x, over, part);
+    mat->model->ASPI_CALL(value_n)(mat, n, part, y, out.r, out.g, out.b);
 }
 
 ASP_FN void block_share(const asp_mat *mat, size_t n, const asp_real *ci, asp_real *share)
 {
-    asp_real F[3][ASP_BLOCK], ones[ASP_BLOCK];
+    asp_real F[3][ASP_BLOCK], ones[ASP_BLOCK], c2[ASP_BLOCK];
     asp_c3s to;
     if (!n)
         return;
@@ -292,7 +328,8 @@ ASP_FN void block_share(const asp_mat *mat, size_t n, const asp_real *ci, asp_re
     to.g = F[1];
     to.b = F[2];
     block_ones(ones);
-    block_fresnel(mat, n, ci, ones, to);
+    loop_square(n, ci, c2);
+    block_fresnel(mat, n, c2, ones, ones, to);
     mat->model->ASPI_CALL(share_n)(mat, n, F[0], F[1], F[2], share);
 }
 
@@ -301,32 +338,32 @@ ASP_CLONES static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp
                                   asp_c3s out)
 {
     const asp_shape *k = &mat->ndf;
-    asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK];
-    asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK], y[ASP_BLOCK];
+    asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], mz2[ASP_BLOCK], c2[ASP_BLOCK];
+    asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK], over[ASP_BLOCK], y[ASP_BLOCK];
     asp_real ones[ASP_BLOCK];
     if (!n)
         return;
     if (!cosine)
         block_ones(ones);
-    loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
+    loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, mz2, c2);
     ASPI_OPS(k).density_n(k, n, mx, my, mz, D);
     ASPI_OPS(k).sigma_n(k, n, R(1.0), wi.x, wi.y, wi.z, si);
     ASPI_OPS(k).sigma_n(k, n, R(1.0), wo.x, wo.y, wo.z, so);
     if (mat->mask == 0)
-        loop_parts(k, n, 0, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
+        loop_parts(k, n, 0, wi, wo, mz2, c2, D, si, so, cosine ? wo.z : ones, x, over, y);
     else
-        loop_parts(k, n, mat->mask, wi, wo, mz, c, D, si, so, cosine ? wo.z : ones, x, y);
-    block_value(mat, n, c, x, y, out);
+        loop_parts(k, n, mat->mask, wi, wo, mz2, c2, D, si, so, cosine ? wo.z : ones, x, over, y);
+    block_value(mat, n, c2, x, over, y, out);
 }
 
 ASP_CLONES static void block_pdf(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
 {
     const asp_shape *k = &mat->ndf;
-    asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK];
+    asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], mz2[ASP_BLOCK], c2[ASP_BLOCK];
     asp_real D[ASP_BLOCK], si[ASP_BLOCK], share[ASP_BLOCK], p[ASP_BLOCK];
     if (!n)
         return;
-    loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
+    loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, mz2, c2);
     ASPI_OPS(k).density_n(k, n, mx, my, mz, D);
     ASPI_OPS(k).sigma_n(k, n, R(1.0), wi.x, wi.y, wi.z, si);
     loop_lobe_density(n, wi.z, D, si, p);
@@ -343,24 +380,30 @@ ASP_CLONES static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s 
                                          asp_real *pdf, asp_c3s F)
 {
     const asp_shape *k = &mat->ndf;
-    asp_real mz[ASP_BLOCK], c[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK];
+    asp_real mz2[ASP_BLOCK], c2[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK], over[ASP_BLOCK];
+    asp_real y[ASP_BLOCK];
     asp_mirrored_s to;
     if (!n)
         return;
     to.wo_x = wo.x;
     to.wo_y = wo.y;
     to.wo_z = wo.z;
-    to.m_z = mz;
-    to.cosine = c;
+    to.m_z2 = mz2;
+    to.cosine2 = c2;
     to.pdf = pdf;
     to.sigma_i = si;
     to.sigma_o = so;
     ASPI_OPS(k).reflect_n(k, n, wi.x, wi.y, wi.z, u1, u2, &to);
     if (mat->mask == 0) /* a constant here spares the default the other masks' arithmetic */
-        loop_weights(k, n, 0, wi, wo.x, wo.y, wo.z, mz, c, si, so, x);
+        loop_weights(k, n, 0, wi, wo.x, wo.y, wo.z, mz2, c2, si, so, x, over);
     else
-        loop_weights(k, n, mat->mask, wi, wo.x, wo.y, wo.z, mz, c, si, so, x);
-    block_value(mat, n, c, x, x, F);
+        loop_weights(k, n, mat->mask, wi, wo.x, wo.y, wo.z, mz2, c2, si, so, x, over);
+    if (mat->model->ASPI_CALL(value)) {
+        loop_ratio(n, x, over, y);
+        block_value(mat, n, c2, x, over, y, F);
+    } else {
+        block_value(mat, n, c2, x, over, x, F);
+    }
 }
 
 ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s wi,
@@ -368,25 +411,25 @@ ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s
                                           const asp_real *u2, asp_v3s wo, asp_real *pdf, asp_c3s F)
 {
     const asp_shape *k = &mat->ndf;
-    asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK];
-    asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK], y[ASP_BLOCK];
+    asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], mz2[ASP_BLOCK], c2[ASP_BLOCK];
+    asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK], over[ASP_BLOCK], y[ASP_BLOCK];
     asp_real share[ASP_BLOCK], facet[ASP_BLOCK], v1[ASP_BLOCK], p[ASP_BLOCK];
     if (!n)
         return;
     block_share(mat, n, wi.z, share);
     loop_choose(n, share, u1, facet, v1);
     ASPI_OPS(k).visible_n(k, n, wi.x, wi.y, wi.z, v1, u2, mx, my, mz);
-    loop_reflect(n, wi.x, wi.y, wi.z, mx, my, mz, wo.x, wo.y, wo.z, c);
+    loop_reflect(n, wi.x, wi.y, wi.z, mx, my, mz, wo.x, wo.y, wo.z);
     loop_mixed_direction(n, wi, facet, v1, u2, wo.x, wo.y, wo.z);
-    loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, c);
+    loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, mz2, c2);
     ASPI_OPS(k).density_n(k, n, mx, my, mz, D);
     ASPI_OPS(k).sigma_n(k, n, R(1.0), wi.x, wi.y, wi.z, si);
     ASPI_OPS(k).sigma_n(k, n, R(1.0), wo.x, wo.y, wo.z, so);
     loop_lobe_density(n, wi.z, D, si, p);
     loop_mixed_density(n, wi.z, wo.z, share, p);
-    loop_mixed_parts(k, n, mat->mask, wi, wo.x, wo.y, wo.z, mz, c, D, si, so, p, x, y);
+    loop_mixed_parts(k, n, mat->mask, wi, wo.x, wo.y, wo.z, mz2, c2, D, si, so, p, x, over, y);
     memcpy(pdf, p, n * sizeof *pdf);
-    block_value(mat, n, c, x, y, F);
+    block_value(mat, n, c2, x, over, y, F);
 }
 
 /* ---- batches */

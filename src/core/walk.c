@@ -102,7 +102,7 @@ ASP_FN asp_v3 negate(asp_v3 a)
 /* Apart, where the compiler makes one vector of three channels. */
 ASP_CLONES_SINGLE static void fresnel_of(const asp_mat *mat, asp_real c, asp_real F[3])
 {
-    aspi_fresnel(mat, c, R(1.0), F);
+    aspi_fresnel(mat, c * aspi_abs(c), R(1.0), R(1.0), F);
 }
 
 /* Area of the walls seen from v. */

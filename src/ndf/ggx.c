@@ -6,9 +6,8 @@
 #include "asperity_ndf.h"
 
 #define ASP_NDF ggx
-#define ASP_NDF_SIGMA_UP
+#define ASP_NDF_UP
 #define ASP_NDF_DENSITY_OVER
-#define ASP_NDF_VISIBLE_STEPS
 #define ASP_PRECISION 64
 #include "ggx.c"
 #undef ASP_PRECISION
@@ -28,13 +27,12 @@ ASP_RECORD asp_model asp_model_ellipsoid = {
     "Walter, Dong, Marschner, Greenberg 2014, eqs. 1-3",
     ASP_KEYS_ELLIPSOID, 0.3, 0, 0, NULL, 0, NULL, ASP_NDF_OPS(ggx)
 };
-#undef ASP_NDF_SIGMA_UP
+#undef ASP_NDF_UP
 #undef ASP_NDF_DENSITY_OVER
-#undef ASP_NDF_VISIBLE_STEPS
 #undef ASP_NDF
 
 #else
-#include "asperity/elementary.h"
+#include "asperity/facet.h"
 
 /* P22 = 1 / (pi (1 + r^2/z^2)^2). */
 ASP_FN asp_real ndf_density_over(const asp_shape *k, asp_real r2, asp_real z2)
@@ -50,47 +48,63 @@ ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
 }
 
 /* Half the hemisphere's area seen from above is its own disc, half the turned disc: (|v| + w)/2
- * (Walter et al. 2014, eq. 6 with A = 1). Below the mean plane the difference would cancel. */
+ * (Walter et al. 2014, eq. 6 with A = 1). Below the mean plane the sum would cancel. */
 ASP_FN asp_real ndf_sigma_up(const asp_shape *k, asp_real w, asp_real s2)
 {
     (void)k;
-    return R(0.5) * (aspi_sqrt(w * w + s2) + aspi_abs(w));
+    return R(0.5) * (aspi_sqrt(s2 + w * w) + aspi_abs(w));
 }
 
 ASP_FN asp_real ndf_sigma(const asp_shape *k, asp_real w, asp_real s2)
 {
-    asp_real up = ndf_sigma_up(k, w, s2);
-    asp_real down = R(0.25) * s2 / aspi_max(up, R(1e-37));
-    return w < R(0.0) ? down : up;
-}
-
-/* The mirror image of v in the visible half of a sphere is uniform on the cap z > -v.z: the normal
- * is v plus a point of the cap. Written so that neither end cancels: with a = 1 + v.z the point's
- * height plus v.z is (1 - u1) a, and 1 minus its height is u1 a. First the horizontal part of v and a. */
-ASP_FN asp_v3 ndf_visible_begin(const asp_shape *k, asp_v3 v)
-{
-    asp_real s2 = v.x * v.x + v.y * v.y;
-    asp_real length = aspi_sqrt(s2 + v.z * v.z);
-    asp_real up = length + aspi_abs(v.z);
-    asp_real inverse = R(1.0) / (length * up);
-    asp_real scale = up * inverse;
+    asp_real up = aspi_sqrt(s2 + w * w) + aspi_abs(w);
     (void)k;
-    v.z = (v.z < R(0.0) ? s2 : up * up) * inverse;
-    v.x = v.x * scale;
-    v.y = v.y * scale;
-    return v;
+    return R(0.5) * (w < R(0.0) ? s2 / aspi_max(up, R(1e-37)) : up);
 }
 
-ASP_FN asp_v3 ndf_visible_end(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
+/* The mirror image of v in the visible half of a sphere as large as v is uniform on the cap z > -v.z: the
+ * normal is v plus a point of the cap. Written so that neither end cancels: with a = |v| + v.z the point's
+ * height plus v.z is (1 - u1) a, and |v| minus its height is u1 a. First the horizontal part of v, a and |v|;
+ * `up` for v.z >= 0. */
+ASP_FN aspi_aimed ndf_aim_up(const asp_shape *k, asp_v3 v)
 {
-    asp_real d = u1 * v.z;
-    asp_real r = aspi_sqrt(d * aspi_max(R(2.0) - d, R(0.0)));
+    aspi_aimed a;
+    (void)k;
+    a.x = v.x;
+    a.y = v.y;
+    a.w = aspi_sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    a.z = a.w + aspi_abs(v.z);
+    return a;
+}
+
+ASP_FN aspi_aimed ndf_aim(const asp_shape *k, asp_v3 v)
+{
+    aspi_aimed a = ndf_aim_up(k, v);
+    a.z = v.z < R(0.0) ? aspi_length2(v) / aspi_max(a.z, R(1e-37)) : a.z;
+    return a;
+}
+
+ASP_FN void ndf_aim_below(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT wx,
+                      const asp_real *ASP_RESTRICT wy, const asp_real *ASP_RESTRICT wz,
+                      asp_real *ASP_RESTRICT sigma, asp_real *ASP_RESTRICT z)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        z[i] = ndf_aim(k, aspi_view(k, aspi_vector(wx[i], wy[i], wz[i]))).z;
+        sigma[i] = R(0.5) * z[i];
+    }
+}
+
+ASP_FN asp_v3 ndf_aimed(const asp_shape *k, aspi_aimed a, asp_real u1, asp_real u2)
+{
+    asp_real d = u1 * a.z;
+    asp_real r = aspi_sqrt(d * (R(2.0) * a.w - d));
     asp_v2 t = aspi_sincos2pi(u2);
     asp_v3 m;
     (void)k;
-    m.x = r * t.x + v.x;
-    m.y = r * t.y + v.y;
-    m.z = (R(1.0) - u1) * v.z;
+    m.x = r * t.x + a.x;
+    m.y = r * t.y + a.y;
+    m.z = (R(1.0) - u1) * a.z;
     return m;
 }
 
