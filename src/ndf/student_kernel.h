@@ -9,7 +9,6 @@
 #ifndef STUDENT_KERNEL_NAMES
 #define STUDENT_KERNEL_NAMES
 #define student_decay ASP_NDF_NAME(_decay)
-#define student_decay_exact ASP_NDF_NAME(_decay_exact)
 #define student_p ASP_NDF_NAME(_p)
 #define student_b ASP_NDF_NAME(_b)
 #define student_point ASP_NDF_NAME(_point)
@@ -47,35 +46,6 @@ ASP_FN asp_real student_decay(const asp_shape *k, int power, asp_real x)
 #endif
 }
 
-/* The same for x = a/z, r = 1/z rounded. In float32 the exponent, which may reach 87, is carried in
- * two numbers from the quotient on, so that its rounding errors do not come out magnified. */
-ASP_FN asp_real student_decay_exact(const asp_shape *k, int power, asp_real a, asp_real z,
-                                    asp_real r)
-{
-#if ASP_PRECISION == 64
-    (void)z;
-    return student_decay(k, power, a * r);
-#elif STUDENT_GAUSSIAN
-    asp_real y = a * r;
-    (void)k;
-    (void)power;
-    return aspi_exp_less(-y, aspi_product_error(y, z, a) * -r);
-#else
-    /* a/n */
-    asp_real ah = aspi_high(a), al = a - ah;
-    asp_real main = ah * k->table[STUDENT_INVN + 1];
-    asp_real rest = ah * k->table[STUDENT_INVN + 2] + al * k->table[STUDENT_INVN];
-    asp_real b = main + rest, b_low = rest - (b - main);
-    /* y = b/z */
-    asp_real y = b * r;
-    asp_v2 l = aspi_log1p_sum(y, (b_low - aspi_product_error(y, z, b)) * r);
-    /* p l */
-    asp_real lh = aspi_high(l.x), ll = (l.x - lh) + l.y;
-    asp_real e_low = ll * k->table[power] + lh * k->table[power + 2];
-    return aspi_exp_less(-(lh * k->table[power + 1]), e_low);
-#endif
-}
-
 /* P at d, as 1 - (1 - d) times a polynomial: exact at d = 1, the edge-on view. */
 ASP_FN asp_real student_p(const asp_shape *k, asp_real d)
 {
@@ -92,16 +62,6 @@ ASP_FN asp_real student_p(const asp_shape *k, asp_real d)
     STUDENT_STEP5(c, 0)
 #endif
     return R(1.0) - (R(1.0) - d) * (odd * t + even);
-}
-
-/* Density of normals: (1 + r2/(n z2))^-gamma / (pi z2^2) (Ribardiere et al. 2017, eq. 11).
- * z2 below 1e-18 (float32) or 1e-150 counts as that, and a density whose power is below e^-87 or e^-708
- * is 0. Relative error 5e-7 (float32; 8e-7 in the far tail) and 1e-15 (1 + |log of the power|). */
-ASP_FN asp_real ndf_density(const asp_shape *k, asp_real r2, asp_real z2)
-{
-    asp_real z = aspi_max(z2, ASP_PRECISION == 64 ? R(1e-150) : R(1e-18));
-    asp_real r = R(1.0) / z;
-    return student_decay_exact(k, STUDENT_GAMMA, r2, z, r) * (r * r * R(1.0 / ASP_PI));
 }
 
 /* sigma = max(w, 0) + s J(|w|/s), J as in student.h. With g^2 = s2 + w^2/n all is homogeneous.
@@ -243,5 +203,6 @@ ASP_FN asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
     return m;
 }
 
+#include "student_density.h"
 #include "student_search.h"
 #include "student_visible.h"
