@@ -175,8 +175,8 @@ ASP_CLONES_SINGLE static void ndf_reflect_1(const asp_shape *k, asp_real wx, asp
 
 /* ---- loops */
 
-/* A distribution whose formula is long may bring this loop, sigma's or the visible normals' itself, in stages: it
- * defines ASP_OWN_DENSITY_N, ASP_OWN_SIGMA_N or ASP_OWN_VISIBLE_N. */
+/* A distribution whose formula is long may bring this loop, sigma's or the normals' itself, in stages: it
+ * defines ASP_OWN_DENSITY_N, ASP_OWN_SIGMA_N, ASP_OWN_VISIBLE_N or ASP_OWN_NORMAL_N. */
 #ifndef ASP_OWN_DENSITY_N
 ASP_CLONES static void ndf_density_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT mx,
                                      const asp_real *ASP_RESTRICT my,
@@ -218,6 +218,7 @@ ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_rea
 }
 #endif
 
+#ifndef ASP_OWN_NORMAL_N
 ASP_CLONES static void ndf_normal_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT u1,
                                     const asp_real *ASP_RESTRICT u2, asp_real *ASP_RESTRICT mx,
                                     asp_real *ASP_RESTRICT my, asp_real *ASP_RESTRICT mz)
@@ -230,6 +231,7 @@ ASP_CLONES static void ndf_normal_n(const asp_shape *k, size_t n, const asp_real
         mz[i] = m.z;
     }
 }
+#endif
 
 /* The sign bits tell whether any direction that matters lies below the mean plane: a wo that points down
  * carries no weight. */
@@ -319,3 +321,4 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
 #undef ASP_OWN_DENSITY_N
 #undef ASP_OWN_SIGMA_N
 #undef ASP_OWN_VISIBLE_N
+#undef ASP_OWN_NORMAL_N

@@ -104,6 +104,21 @@ static void wide_rows_32(const float *row, size_t n, const int *at, float *out)
         _mm512_mask_storeu_ps(out + i, some, FROM(row, from));
     }
 }
+
+__attribute__((target("avx512f")))
+static size_t wide_places(size_t n, const int *some, int *out)
+{
+    __m512i at = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
+    size_t i, count = 0;
+    for (i = 0; i < n; i += 16) {
+        __m512i here = _mm512_maskz_loadu_epi32(SOME(n, i), some + i);
+        __mmask16 take = _mm512_test_epi32_mask(here, here);
+        _mm512_storeu_si512(out + count, _mm512_maskz_compress_epi32(take, at));
+        count += (size_t)__builtin_popcount(take);
+        at = _mm512_add_epi32(at, _mm512_set1_epi32(16));
+    }
+    return count;
+}
 #undef FROM
 #undef FROM_64
 #undef ROW_64
@@ -112,6 +127,22 @@ static void wide_rows_32(const float *row, size_t n, const int *at, float *out)
 #undef SOME
 #undef PLUS_TIMES
 #endif
+#endif
+
+#if ASP_PRECISION == 32
+size_t aspi_places_n(size_t n, const int *some, int *out)
+{
+    size_t i, count = 0;
+#ifdef ASPI_PIECES_AVX512
+    if (__builtin_cpu_supports("avx512f"))
+        return wide_places(n, some, out);
+#endif
+    for (i = 0; i < n; i++) {
+        out[count] = (int)i;
+        count += some[i] != 0;
+    }
+    return count;
+}
 #endif
 
 ASP_CLONES static void plain_pieces(const asp_real *table, int first, size_t n, const asp_real *ASP_RESTRICT q,

@@ -30,6 +30,9 @@ void aspi_rows_n_32(const float *row, size_t n, const int *at, float *out);
 /* aspi_pieces */
 void aspi_pieces_n_64(const double *table, int first, size_t n, const double *q, const double *y, double *out);
 void aspi_pieces_n_32(const float *table, int first, size_t n, const float *q, const float *y, float *out);
+/* Every i with some[i] other than 0, in order; how many. There is room for ASP_PLACES_MORE numbers more than that. */
+#define ASP_PLACES_MORE 16
+size_t aspi_places_n(size_t n, const int *some, int *out);
 #endif
 
 #if (ASP_PRECISION == 64 && !defined(ASP_PIECES_64)) || \

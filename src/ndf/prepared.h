@@ -43,7 +43,7 @@ typedef void aspi_log_density(const asp_ndf *k, size_t n, const double *r2, doub
  * without a closed normalisation subtracts, and 0 within 1e-9 where f is normalised. */
 asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err);
 
-/* ---- the tables, for prepared_kernel.h: AREA and DEEP by pieces (ndf/pieces.h), the others
+/* ---- the tables, for prepared_kernel.h: AREA, DEEP and NORMAL by pieces (ndf/pieces.h), the others
  * coefficients of uniform cubic B-splines, divided by 6
  *
  * With T0 = 2 J(0), J as in student.h, slopes in units of T0 and q = |w|/(T0 s):
@@ -52,7 +52,8 @@ asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
  *               mean plane keeps its relative accuracy. While P22 is the power -2n this is about n/(1 + q): J/P22 falls like
  *               n^(-5/2)
  *               If bent, log(J/T0) instead, in the last piece less PREPARED_FALL log(y/PREPARED_DEEP_LAST)
- *     NORMAL    log r over z, z of t = log(share within r/share beyond r) of all slopes
+ *     NORMAL    r over x = sqrt(share within r/share beyond r) of all slopes, by pieces in x up to
+ *               PREPARED_NORMAL_LAST, and from there on as a power of x
  *     VIEWS     x over y = log(1 + mu/c): where among the rows of TAIL a view of slope mu stands. Rows are close
  *               where what is seen changes its shape, as on the way from a peak to a plateau
  *     TAIL      what a view below the mean plane sees are slopes of radius sqrt(mu^2 + eta^2): over x and z,
@@ -66,6 +67,8 @@ asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
 #define PREPARED_PIECES 256             /* numbers of a table by pieces */
 #define PREPARED_AREA_OCTAVE (-8)       /* where their first octave begins */
 #define PREPARED_DEEP_OCTAVE (-1)
+#define PREPARED_NORMAL_OCTAVE (-5)
+#define PREPARED_NORMAL_LAST 5800.0     /* x beyond the largest that float32 has */
 #define PREPARED_DEEP_LAST (1.0 / (1 + 24576.0))      /* y where the last piece of DEEP begins */
 #define PREPARED_WITHIN 8.0
 #define PREPARED_BEYOND 14.0
@@ -76,7 +79,6 @@ asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
 #define PREPARED_SHARE_LAST 17.288385820467795
 #define PREPARED_SHARE_LEAST 37.0       /* the least share that is told from none: 2^-53 */
 #define PREPARED_SHARE_ROW (PREPARED_SHARE_CELLS + 3)
-#define PREPARED_NORMAL_CELLS 52        /* two where TAIL has one */
 #define PREPARED_VIEWS_CELLS 64
 #define PREPARED_VIEW_CELLS 32          /* rows of TAIL, less 1 */
 /* Visible normals drawn from above the mean plane end at a radius beyond which less than this share lies: there
@@ -93,14 +95,13 @@ enum {
     PREPARED_NEAR,               /* c of VIEWS over T0, */
     PREPARED_FARTHEST,           /* its last y, */
     PREPARED_PER_VIEW,           /* and cells per unit of y */
-    PREPARED_NORMAL_START,       /* d log r/dt before the first t */
-    PREPARED_NORMAL_END,         /* and beyond the last, */
-    PREPARED_TAIL_START,         /* d log eta/dt likewise */
+    PREPARED_NORMAL_END,         /* d log r/d log x beyond PREPARED_NORMAL_LAST */
+    PREPARED_TAIL_START,         /* d log eta/dt before the first t, and beyond the last */
     PREPARED_TAIL_END,
     PREPARED_AREA = PREPARED_OWN + 16,
     PREPARED_DEEP = PREPARED_AREA + PREPARED_PIECES,
     PREPARED_NORMAL = PREPARED_DEEP + PREPARED_PIECES,
-    PREPARED_VIEWS = PREPARED_NORMAL + PREPARED_NORMAL_CELLS + 3,
+    PREPARED_VIEWS = PREPARED_NORMAL + PREPARED_PIECES,
     PREPARED_TAIL = PREPARED_VIEWS + PREPARED_VIEWS_CELLS + 3,
     PREPARED_END = PREPARED_TAIL + PREPARED_SHARE_ROW * (PREPARED_VIEW_CELLS + 3)
 };

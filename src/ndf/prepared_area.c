@@ -107,7 +107,7 @@ typedef struct prepared_piece {
 /* Less than e^this of what an edge-on view sees is gone in float64. */
 #define AREA_GONE (-3000.0)
 
-static double prepared_half_octave(int octave, int i)
+double aspi_prepared_half_octave(int octave, int i)
 {
     double q = 1 + 0.5 * (i & 1);
     for (octave += i / 2; octave < 0; octave++)
@@ -117,15 +117,19 @@ static double prepared_half_octave(int octave, int i)
     return q;
 }
 
-/* At the Chebyshev points of the second kind between y0 and y1, both of them included, so that neighbours meet;
- * y = 0 is not looked at. */
+double aspi_prepared_node(double y0, double y1, int i)
+{
+    static const double node[TERMS] = { -1, -HALF_ROOT_3, -0.5, 0, 0.5, HALF_ROOT_3, 1 };
+    return i == 0 ? y0 : i == TERMS - 1 ? y1 : 0.5 * (y0 + y1) + 0.5 * (y1 - y0) * node[i];
+}
+
+/* y = 0 is not looked at. */
 static void prepared_look(const prepared_source *s, const prepared_kernels *kernel, double t0, double y0,
                           double y1, prepared_piece *out)
 {
-    static const double node[TERMS] = { -1, -HALF_ROOT_3, -0.5, 0, 0.5, HALF_ROOT_3, 1 };
     int i;
     for (i = 0; i < TERMS; i++) {
-        double y = i == 0 ? y0 : i == TERMS - 1 ? y1 : 0.5 * (y0 + y1) + 0.5 * (y1 - y0) * node[i];
+        double y = aspi_prepared_node(y0, y1, i);
         double far = y > 1e-7 * y0 ? y : 1e-7 * y0, mu = t0 * (1 - far) / far;
         out->y[i] = y;
         out->log_density[i] = aspi_prepared_log(s, mu * mu);
@@ -135,8 +139,7 @@ static void prepared_look(const prepared_source *s, const prepared_kernels *kern
     }
 }
 
-/* Piece i of a table: the polynomial through the values (Newton), in powers of y - center. */
-static void prepared_piece_put(const double *y, const double *value, double center, double *table, int i)
+void aspi_prepared_piece_put(const double *y, const double *value, double center, double *table, int i)
 {
     double d[TERMS], c[TERMS] = { 0 }, next[TERMS];
     int j, k;
@@ -175,7 +178,7 @@ static void prepared_area_piece(const prepared_piece *p, double t0, double *tabl
         value[j] = aspi_exp_64(p->log_area[j]) / (t0 * y);
         value[j] = value[j] > 1e-25 ? value[j] : 0;        /* subnormal numbers are slow */
     }
-    prepared_piece_put(p->y, value, prepared_center(p), table, i);
+    aspi_prepared_piece_put(p->y, value, prepared_center(p), table, i);
 }
 
 /* d log J/d log y for y -> 0. */
@@ -196,7 +199,7 @@ static void prepared_bent_piece(const prepared_piece *p, double t0, double fall,
         if (i == ASP_PIECES - 1)
             value[j] -= fall * aspi_log_64(y / PREPARED_DEEP_LAST);
     }
-    prepared_piece_put(p->y, value, prepared_center(p), table, i);
+    aspi_prepared_piece_put(p->y, value, prepared_center(p), table, i);
 }
 
 /* The last piece is centered at y = 0, where the value is 0 and keeps its relative accuracy. */
@@ -209,7 +212,7 @@ static void prepared_smooth_piece(const prepared_piece *p, double t0, double *ta
         double x = p->log_area[j] - p->log_density[j] - 3 * aspi_log_64(t0) + 0.5 * aspi_log_64(y);
         value[j] = gone ? 1 : p->y[j] > 0 ? aspi_exp_64(-0.4 * x) : 0;
     }
-    prepared_piece_put(p->y, value, last ? 0 : prepared_center(p), table, i);
+    aspi_prepared_piece_put(p->y, value, last ? 0 : prepared_center(p), table, i);
 }
 
 static void prepared_deep_piece(const prepared_piece *p, double t0, double *table, int i)
@@ -230,7 +233,7 @@ void aspi_prepared_area_tables(const prepared_source *s, double t0, double *out)
     prepared_kernel(aspi_prepared_finer(s), &kernel);
     out[PREPARED_FALL] = prepared_fall(s, &kernel, t0);
     for (i = 0; i < last + both; i++, y = next) {
-        next = 1 / (1 + prepared_half_octave(PREPARED_AREA_OCTAVE, i + 1));
+        next = 1 / (1 + aspi_prepared_half_octave(PREPARED_AREA_OCTAVE, i + 1));
         prepared_look(s, &kernel, t0, y, next, &p);
         if (i < last)
             prepared_area_piece(&p, t0, out + PREPARED_AREA, i);
@@ -239,7 +242,7 @@ void aspi_prepared_area_tables(const prepared_source *s, double t0, double *out)
     }
     prepared_look(s, &kernel, t0, y, 0, &p);
     prepared_deep_piece(&p, t0, out, last);
-    y = 1 / (1 + prepared_half_octave(PREPARED_AREA_OCTAVE, last));
+    y = 1 / (1 + aspi_prepared_half_octave(PREPARED_AREA_OCTAVE, last));
     prepared_look(s, &kernel, t0, y, 0, &p);
     prepared_area_piece(&p, t0, out + PREPARED_AREA, last);
 }

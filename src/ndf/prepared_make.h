@@ -76,6 +76,12 @@ ASP_FN double aspi_prepared_near(double z)
 
 /* Integral of P22 r^power over log r: the mass is 2 pi times that of power 2, J(0) twice that of 3. */
 double aspi_prepared_moment(const prepared_source *s, int power);
+/* Of tables by pieces: where piece i ends, counted from the octave that a table begins with; point i of the seven at
+ * which a piece from y0 to y1 is looked at, Chebyshev's of the second kind, both ends included, so that neighbours
+ * meet; and piece i from the values there, the polynomial through them in powers of y - center. */
+double aspi_prepared_half_octave(int octave, int i);
+double aspi_prepared_node(double y0, double y1, int i);
+void aspi_prepared_piece_put(const double *y, const double *value, double center, double *table, int i);
 /* AREA and DEEP. */
 void aspi_prepared_area_tables(const prepared_source *s, double t0, double *table);
 /* r^2 P22 of slopes sqrt(mu^2 + eta^2) seen from below by a view of slope mu, eta (eta - mu atan(eta/mu)) P22 of

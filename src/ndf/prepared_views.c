@@ -3,6 +3,7 @@
 
 #define ASP_PRECISION 64
 #include "asperity/elementary.h"
+#include "ndf/pieces.h"
 
 /* t at x in cells. */
 static double prepared_share_of(double x)
@@ -41,15 +42,33 @@ static void prepared_shares_spline(int n, const double *y, double *out)
     aspi_prepared_spline(n, 1, y, 1, aspi_prepared_end_slope(y, 1), -aspi_prepared_end_slope(y + n, -1), out, 1);
 }
 
+/* Radius at odds x^2; their share within is x^2/(1 + x^2). */
+static double prepared_normal_at(const prepared_source *s, const prepared_panels *rings, double x, int *panel)
+{
+    return aspi_exp_64(aspi_prepared_radius(rings, aspi_prepared_ring, s, aspi_log1p_64(x * x), panel));
+}
+
+/* By pieces that meet: each is the polynomial through seven points, both ends among them. */
 void aspi_prepared_normal_table(const prepared_source *s, double *table)
 {
-    const int n = PREPARED_NORMAL_CELLS;
-    double y[PREPARED_NORMAL_CELLS + 1];
+    double first = 0, far;
     prepared_panels rings;
+    int i, panel = 0;
     aspi_prepared_rings(s, &rings);
-    prepared_radii(&rings, aspi_prepared_ring, s, n, y);
-    prepared_shares_spline(n, y, table + PREPARED_NORMAL);
-    prepared_ends(y, n, table + PREPARED_NORMAL_START, table + PREPARED_NORMAL_END);
+    for (i = 0; i < ASP_PIECES; i++) {
+        double last = i < ASP_PIECES - 1 ? aspi_prepared_half_octave(PREPARED_NORMAL_OCTAVE, i + 1)
+                                         : PREPARED_NORMAL_LAST;
+        double x[ASP_PIECES_TERMS], r[ASP_PIECES_TERMS];
+        int j;
+        for (j = 0; j < ASP_PIECES_TERMS; j++) {
+            x[j] = aspi_prepared_node(first, last, j);
+            r[j] = prepared_normal_at(s, &rings, aspi_max_64(x[j], 1e-7), &panel);
+        }
+        aspi_prepared_piece_put(x, r, (double)(float)(0.5 * (first + last)), table + PREPARED_NORMAL, i);
+        first = last;
+        far = r[ASP_PIECES_TERMS - 1];
+    }
+    table[PREPARED_NORMAL_END] = aspi_log_64(prepared_normal_at(s, &rings, 2 * first, &panel) / far) / aspi_log_64(2);
 }
 
 /* ------------------------------------------------------------------ slopes seen from below */
