@@ -121,8 +121,8 @@ ASP_FN asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
     return m;
 }
 
-#define PREPARED_OWN_NORMAL
+#define ASP_OWN_NORMAL
 #include "prepared_kernel.h"
 #include "asperity/ndf_loops.h"
-#undef PREPARED_OWN_NORMAL
+#undef ASP_OWN_NORMAL
 #endif

@@ -18,7 +18,7 @@
  *     #include "prepared_kernel.h"          ndf_sigma, ndf_visible, ndf_normal
  *     #include "asperity/ndf_loops.h"
  *
- * If it has a closed form of its own for the plain normal or for sigma, it defines PREPARED_OWN_NORMAL or
+ * If it has a closed form of its own for the plain normal or for sigma, it defines ASP_OWN_NORMAL or
  * PREPARED_OWN_SIGMA before that line and writes ndf_normal or ndf_sigma itself.
  *
  * A density whose logarithm has corners in its second derivative or its first (knots) defines PREPARED_BENT before

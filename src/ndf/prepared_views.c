@@ -42,33 +42,49 @@ static void prepared_shares_spline(int n, const double *y, double *out)
     aspi_prepared_spline(n, 1, y, 1, aspi_prepared_end_slope(y, 1), -aspi_prepared_end_slope(y + n, -1), out, 1);
 }
 
-/* Radius at odds x^2; their share within is x^2/(1 + x^2). */
-static double prepared_normal_at(const prepared_source *s, const prepared_panels *rings, double x, int *panel)
+/* Radii at odds x^2, growing; their share within is x^2/(1 + x^2). */
+static void prepared_normals_at(const prepared_source *s, const prepared_panels *rings, int n, const double *x,
+                                double *out)
 {
-    return aspi_exp_64(aspi_prepared_radius(rings, aspi_prepared_ring, s, aspi_log1p_64(x * x), panel));
+    double rho[PREPARED_SHARES];
+    int from, count, i;
+    for (from = 0; from < n; from += count) {
+        count = n - from < PREPARED_SHARES ? n - from : PREPARED_SHARES;
+        for (i = 0; i < count; i++)
+            rho[i] = aspi_log1p_64(x[from + i] * x[from + i]);
+        aspi_prepared_radii(rings, aspi_prepared_ring, s, count, rho, out + from);
+    }
+    for (i = 0; i < n; i++)
+        out[i] = aspi_exp_64(out[i]);
 }
 
-/* By pieces that meet: each is the polynomial through seven points, both ends among them. */
+/* Each piece is the polynomial through seven points, the last of them the first of the next piece. */
+#define NORMAL_STEP (ASP_PIECES_TERMS - 1)
+#define NORMAL_POINTS (ASP_PIECES * NORMAL_STEP + 1)
+
 void aspi_prepared_normal_table(const prepared_source *s, double *table)
 {
-    double first = 0, far;
+    double x[NORMAL_POINTS + 1], r[NORMAL_POINTS + 1], first = 0;
+    const double *last = r + NORMAL_POINTS - 1;
     prepared_panels rings;
-    int i, panel = 0;
-    aspi_prepared_rings(s, &rings);
+    int i, j;
     for (i = 0; i < ASP_PIECES; i++) {
-        double last = i < ASP_PIECES - 1 ? aspi_prepared_half_octave(PREPARED_NORMAL_OCTAVE, i + 1)
-                                         : PREPARED_NORMAL_LAST;
-        double x[ASP_PIECES_TERMS], r[ASP_PIECES_TERMS];
-        int j;
-        for (j = 0; j < ASP_PIECES_TERMS; j++) {
-            x[j] = aspi_prepared_node(first, last, j);
-            r[j] = prepared_normal_at(s, &rings, aspi_max_64(x[j], 1e-7), &panel);
-        }
-        aspi_prepared_piece_put(x, r, (double)(float)(0.5 * (first + last)), table + PREPARED_NORMAL, i);
-        first = last;
-        far = r[ASP_PIECES_TERMS - 1];
+        double end = i < ASP_PIECES - 1 ? aspi_prepared_half_octave(PREPARED_NORMAL_OCTAVE, i + 1)
+                                        : PREPARED_NORMAL_LAST;
+        for (j = 0; j <= NORMAL_STEP; j++)
+            x[i * NORMAL_STEP + j] = aspi_prepared_node(first, end, j);
+        first = end;
     }
-    table[PREPARED_NORMAL_END] = aspi_log_64(prepared_normal_at(s, &rings, 2 * first, &panel) / far) / aspi_log_64(2);
+    x[0] = 1e-7;
+    x[NORMAL_POINTS] = 2 * PREPARED_NORMAL_LAST;
+    aspi_prepared_rings(s, &rings);
+    prepared_normals_at(s, &rings, NORMAL_POINTS + 1, x, r);
+    for (i = 0; i < ASP_PIECES; i++) {
+        const double *at = x + i * NORMAL_STEP;
+        double center = (double)(float)(0.5 * (at[0] + at[NORMAL_STEP]));
+        aspi_prepared_piece_put(at, r + i * NORMAL_STEP, center, table + PREPARED_NORMAL, i);
+    }
+    table[PREPARED_NORMAL_END] = aspi_log_64(last[1] / last[0]) / aspi_log_64(2);
 }
 
 /* ------------------------------------------------------------------ slopes seen from below */

@@ -68,7 +68,7 @@ ASP_FN void prepared_plains(const asp_shape *k, size_t n, asp_bits beyond, const
         r[i] = aspi_select(x[i] > R(PREPARED_NORMAL_LAST), r[i] * prepared_beyond(k, x[i]), r[i]);
 }
 
-#ifndef PREPARED_OWN_NORMAL
+#ifndef ASP_OWN_NORMAL
 ASP_FN asp_real prepared_drawn(asp_real u1)
 {
     asp_real last = R(1.0) - (ASP_PRECISION == 64 ? R(0x1p-53) : R(0x1p-24));
@@ -235,7 +235,7 @@ ASP_FN void prepared_collect(const asp_shape *k, size_t n, const prepared_block 
     t->padded = n = (count + PREPARED_LANES - 1) / PREPARED_LANES * PREPARED_LANES;
     for (i = count; i < n; i++)
         t->place[i] = t->place[0];
-    for (i = 0; i < n; i++) {
+    for (i = 0; i < t->padded; i++) {
         t->c[i] = b->c[t->place[i]];
         t->s[i] = b->s[t->place[i]];
         t->odds[i] = b->odds[t->place[i]];
