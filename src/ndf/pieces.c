@@ -34,6 +34,7 @@
     _mm512_mask_blend_pd(upper, _mm512_permutex2var_pd(_mm512_loadu_pd(row), at, _mm512_loadu_pd((row) + 8)), \
                          _mm512_permutex2var_pd(_mm512_loadu_pd((row) + 16), at, _mm512_loadu_pd((row) + 24)))
 #define ROW_64(r) FROM_64(table + (r) * ASP_PIECES, piece, upper)
+#define SOME_64(n, i) ((n) - (i) < 8 ? (__mmask8)((1u << ((n) - (i))) - 1u) : (__mmask8)0xffu)
 #define PLUS_TIMES_64(a, b, c) _mm512_add_pd(a, _mm512_mul_pd(b, c))
 
 __attribute__((target("avx512f")))
@@ -41,7 +42,7 @@ static void wide_pieces_64(const double *table, int first, size_t n, const doubl
 {
     size_t i;
     for (i = 0; i < n; i += 8) {
-        __mmask8 some = n - i < 8 ? (__mmask8)((1u << (n - i)) - 1u) : (__mmask8)0xffu, upper;
+        __mmask8 some = SOME_64(n, i), upper;
         __m512i bits = _mm512_castpd_si512(_mm512_maskz_loadu_pd(some, q + i));
         __m512i piece = _mm512_sub_epi64(_mm512_maskz_srli_epi64(some, bits, 51), _mm512_set1_epi64(first));
         __m512d t, t2, low, high;
@@ -72,6 +73,38 @@ static void wide_pieces_32(const float *table, int first, size_t n, const float 
         low = PLUS_TIMES(PLUS_TIMES(ROW(1), ROW(2), t), PLUS_TIMES(ROW(3), ROW(4), t), t2);
         high = PLUS_TIMES(PLUS_TIMES(ROW(5), ROW(6), t), ROW(7), t2);
         _mm512_mask_storeu_ps(out + i, some, PLUS_TIMES(low, high, _mm512_mul_ps(t2, t2)));
+    }
+}
+
+__attribute__((target("avx512f")))
+static void wide_knots_64(const double *knots, int last, size_t n, const double *x, int *out)
+{
+    size_t i;
+    int step;
+    for (i = 0; i < n; i += 8) {
+        __mmask8 some = SOME_64(n, i);
+        __m512d here = _mm512_maskz_loadu_pd(some, x + i);
+        __m512i at = _mm512_setzero_si512();
+        for (step = ASP_PIECES / 2; step; step /= 2) {
+            __m512i to = _mm512_add_epi64(at, _mm512_set1_epi64(step));
+            __mmask8 upper = _mm512_test_epi64_mask(to, _mm512_set1_epi64(16));
+            __mmask8 take = _mm512_mask_cmp_pd_mask(_mm512_cmple_epi64_mask(to, _mm512_set1_epi64(last)), here,
+                                                    FROM_64(knots, to, upper), _CMP_GE_OQ);
+            at = _mm512_mask_mov_epi64(at, take, to);
+        }
+        _mm512_mask_cvtepi64_storeu_epi32(out + i, some, at);
+    }
+}
+
+__attribute__((target("avx512f")))
+static void wide_rows_64(const double *row, size_t n, const int *at, double *out)
+{
+    size_t i;
+    for (i = 0; i < n; i += 8) {
+        __mmask8 some = SOME_64(n, i);
+        __m512i from = _mm512_cvtepi32_epi64(_mm512_castsi512_si256(_mm512_maskz_loadu_epi32(some, at + i)));
+        __mmask8 upper = _mm512_test_epi64_mask(from, _mm512_set1_epi64(16));
+        _mm512_mask_storeu_pd(out + i, some, FROM_64(row, from, upper));
     }
 }
 
@@ -123,6 +156,7 @@ static size_t wide_places(size_t n, const int *some, int *out)
 #undef FROM_64
 #undef ROW_64
 #undef PLUS_TIMES_64
+#undef SOME_64
 #undef ROW
 #undef SOME
 #undef PLUS_TIMES
@@ -174,9 +208,9 @@ ASP_CLONES static void plain_knots(const asp_real *knots, int last, size_t n, co
 
 void aspi_knots_n(const asp_real *knots, int last, size_t n, const asp_real *x, int *out)
 {
-#if defined(ASPI_PIECES_AVX512) && ASP_PRECISION == 32
+#ifdef ASPI_PIECES_AVX512
     if (__builtin_cpu_supports("avx512f")) {
-        wide_knots_32(knots, last, n, x, out);
+        ASP_NAME(wide_knots)(knots, last, n, x, out);
         return;
     }
 #endif
@@ -193,9 +227,9 @@ ASP_CLONES static void plain_rows(const asp_real *row, size_t n, const int *ASP_
 
 void aspi_rows_n(const asp_real *row, size_t n, const int *at, asp_real *out)
 {
-#if defined(ASPI_PIECES_AVX512) && ASP_PRECISION == 32
+#ifdef ASPI_PIECES_AVX512
     if (__builtin_cpu_supports("avx512f")) {
-        wide_rows_32(row, n, at, out);
+        ASP_NAME(wide_rows)(row, n, at, out);
         return;
     }
 #endif

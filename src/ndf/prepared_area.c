@@ -9,11 +9,13 @@
 #define AREA_LAST 400
 #define AREA_BLOCK 64
 
-/* x^2 and x^2 (x - atan x) for x = e^(j h), j = first + i. */
+#define AREA_GROUP 8             /* of which terms are added before they are looked at */
+#define AREA_TERMS (PREPARED_FINER * (AREA_LAST - AREA_FIRST))
+
+/* x^2 and x^2 (x - atan x) for x = e^(j h), j = first ... first + count - 1, and a block more. */
 typedef struct prepared_kernels {
-    int first, last;
-    double step;
-    double x2[PREPARED_FINER * (AREA_LAST - AREA_FIRST) + 1], weight[PREPARED_FINER * (AREA_LAST - AREA_FIRST) + 1];
+    int first, count;
+    double step, x2[AREA_TERMS + AREA_BLOCK], weight[AREA_TERMS + AREA_BLOCK];
 } prepared_kernels;
 
 ASP_CLONES static void area_kernel(double step, int first, size_t n, double *ASP_RESTRICT x2,
@@ -31,8 +33,8 @@ static void prepared_kernel(int finer, prepared_kernels *out)
 {
     out->step = PREPARED_STEP / finer;
     out->first = finer * AREA_FIRST;
-    out->last = finer * AREA_LAST;
-    area_kernel(out->step, out->first, (size_t)(out->last - out->first) + 1, out->x2, out->weight);
+    out->count = finer * (AREA_LAST - AREA_FIRST);
+    area_kernel(out->step, out->first, (size_t)out->count + AREA_BLOCK, out->x2, out->weight);
 }
 
 ASP_CLONES static void area_slopes(double m2, size_t n, const double *ASP_RESTRICT x2, double *ASP_RESTRICT r2)
@@ -50,41 +52,48 @@ ASP_CLONES static void area_terms(double base, size_t n, const double *ASP_RESTR
         out[i] = aspi_exp_64(log_density[i] - base) * weight[i];
 }
 
+static double area_most(const double *logs)
+{
+    double most[AREA_GROUP];
+    int i, j;
+    for (j = 0; j < AREA_GROUP; j++)
+        most[j] = logs[j];
+    for (i = AREA_GROUP; i < AREA_BLOCK; i += AREA_GROUP)
+        for (j = 0; j < AREA_GROUP; j++)
+            most[j] = aspi_max_64(most[j], logs[i + j]);
+    for (j = 1; j < AREA_GROUP; j++)
+        most[0] = aspi_max_64(most[0], most[j]);
+    return most[0];
+}
+
 /* log J(mu): J = integral of 2 P22(mu^2 + rho^2) rho^2 (rho - mu atan(rho/mu)) d log rho by the trapezoidal rule,
  * rho = mu e^(j h). Before the first term and beyond log rho = `high` the integrand is taken for a power, whose
  * terms are a geometric series. */
 static double prepared_log_area(const prepared_source *s, const prepared_kernels *kernel, double mu)
 {
-    double m2 = mu * mu, base = aspi_prepared_log(s, m2), sum = 0, term = 0, last = 0, first = 0;
+    double m2 = mu * mu, base = aspi_prepared_log(s, m2), sum = 0, term = 0, last = 0;
     double t = aspi_log_64(mu), end = aspi_max_64(s->high, t + 7) + 4;
-    double logs[AREA_BLOCK], terms[AREA_BLOCK], r2[AREA_BLOCK];
-    int j, start = (int)((s->low + 13 - t) / kernel->step), ended = 0;
-    start = start < kernel->first ? kernel->first : start;
-    for (j = start; j <= kernel->last && !ended; ) {
-        const int from = j - kernel->first, left = kernel->last - j + 1, n = left < AREA_BLOCK ? left : AREA_BLOCK;
-        double most = base;
-        int i;
-        area_slopes(m2, (size_t)n, kernel->x2 + from, r2);
-        aspi_prepared_logs(s, (size_t)n, r2, logs);
-        for (i = 0; i < n; i++)
-            most = aspi_max_64(most, logs[i]);
+    double logs[AREA_BLOCK], p[AREA_BLOCK], r2[AREA_BLOCK];
+    int from = (int)((s->low + 13 - t) / kernel->step) - kernel->first, start, i, ended = 0;
+    start = from = from < 0 ? 0 : from;
+    for (; from < kernel->count && !ended; from += AREA_BLOCK) {
+        double most;
+        area_slopes(m2, AREA_BLOCK, kernel->x2 + from, r2);
+        aspi_prepared_logs(s, AREA_BLOCK, r2, logs);
+        most = area_most(logs);
         if (most > base + 200) {              /* the peak lies farther out: count from here on */
-            double less = aspi_exp_64(base - most);
-            sum *= less;
-            term *= less;
-            first *= less;
+            sum *= aspi_exp_64(base - most);
             base = most;
         }
-        area_terms(base, (size_t)n, logs, kernel->weight + from, terms);
-        for (i = 0; i < n && !ended; i++, j++) {
-            last = term;
-            term = terms[i];
-            sum += term;
-            if (j == start)
-                first = term;
-            if (j == start + 1 && term > first)
-                sum += first * first / (term - first);
-            ended = term < last && (term < 1e-10 * sum || t + kernel->step * j > end);
+        area_terms(base, AREA_BLOCK, logs, kernel->weight + from, p);
+        if (from == start && p[1] > p[0])
+            sum = p[0] * p[0] / (p[1] - p[0]);
+        for (i = 0; i < AREA_BLOCK && !ended; i += AREA_GROUP) {
+            sum += ((p[i] + p[i + 1]) + (p[i + 2] + p[i + 3])) + ((p[i + 4] + p[i + 5]) + (p[i + 6] + p[i + 7]));
+            last = p[i + AREA_GROUP - 2];
+            term = p[i + AREA_GROUP - 1];
+            ended = term < last && (term < 1e-10 * sum
+                                    || t + kernel->step * (kernel->first + from + i + AREA_GROUP - 1) > end);
         }
     }
     if (term > 0 && term < last)

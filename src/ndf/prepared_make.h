@@ -52,7 +52,7 @@ double aspi_prepared_end_slope(const double *y, int step);
 void aspi_prepared_integrate(prepared_integrand *g, const void *context, double low, double power, double high,
                              double longest, double least, prepared_panels *out);
 /* log of the radii where -log of the share beyond is rho[0 ... n - 1], growing; n up to PREPARED_SHARES. */
-#define PREPARED_SHARES 96
+#define PREPARED_SHARES 256
 void aspi_prepared_radii(const prepared_panels *p, prepared_integrand *g, const void *context, int n,
                          const double *rho, double *out);
 /* r^2 P22 2 pi: mass per unit of t = log r; `context` is the source. */

@@ -172,6 +172,8 @@ void aspi_prepared_radii(const prepared_panels *p, prepared_integrand *g, const 
     double mass[PREPARED_SHARES], total = p->below[0] + p->beyond[0];
     panels_search q;
     int last = p->count, panel = 0, i, j;
+    if (n < 1)
+        return;
     panels_rhos((size_t)last + 1, total, p->below, p->beyond, edge_rho);
     for (i = 0; i < n; i++) {
         while (panel < last - 1 && edge_rho[panel + 1] < rho[i])
