@@ -102,7 +102,8 @@ static void wide_rows_64(const double *row, size_t n, const int *at, double *out
     size_t i;
     for (i = 0; i < n; i += 8) {
         __mmask8 some = SOME_64(n, i);
-        __m512i from = _mm512_cvtepi32_epi64(_mm512_castsi512_si256(_mm512_maskz_loadu_epi32(some, at + i)));
+        __m256i part = _mm512_maskz_extracti64x4_epi64(0xff, _mm512_maskz_loadu_epi32(some, at + i), 0);
+        __m512i from = _mm512_maskz_cvtepi32_epi64(some, part);
         __mmask8 upper = _mm512_test_epi64_mask(from, _mm512_set1_epi64(16));
         _mm512_mask_storeu_pd(out + i, some, FROM_64(row, from, upper));
     }

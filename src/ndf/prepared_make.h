@@ -22,7 +22,7 @@ typedef struct prepared_source {
 
 typedef void prepared_integrand(const void *context, size_t n, const double *t, double *out);
 
-#define PREPARED_PANELS 400
+#define PREPARED_PANELS 512
 
 typedef struct prepared_panels {
     int count;

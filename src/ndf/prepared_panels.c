@@ -13,7 +13,8 @@ static const double gauss_node[4] = { 0.5 - 0.43056815579702629, 0.5 - 0.1699905
                                       0.5 + 0.16999052179242813, 0.5 + 0.43056815579702629 };
 static const double gauss_weight[2] = { 0.17392742256872693, 0.32607257743127307 };
 
-#define PANELS_CHUNK 16          /* panels that are looked at together on the way out */
+#define PANELS_CHUNK 16          /* panels that are looked at together on the way out, */
+#define PANELS_SUMMED 64         /* and that are summed together */
 
 /* ------------------------------------------------------------------ panels */
 
@@ -66,17 +67,19 @@ static int panels_end(int n, const double *edge, const double *value, double lea
 
 static void panels_sums(prepared_integrand *g, const void *context, int n, const double *edge, double *mass)
 {
-    double t[4 * PREPARED_PANELS], found[4 * PREPARED_PANELS];
-    int i, j;
-    if (n < 1)
-        return;
-    for (j = 0; j < 4; j++)
-        for (i = 0; i < n; i++)
-            t[j * n + i] = edge[i] + gauss_node[j] * (edge[i + 1] - edge[i]);
-    g(context, 4 * (size_t)n, t, found);
-    for (i = 0; i < n; i++)
-        mass[i] = (edge[i + 1] - edge[i]) * (gauss_weight[0] * (found[i] + found[3 * n + i])
-                                             + gauss_weight[1] * (found[n + i] + found[2 * n + i]));
+    double t[4 * PANELS_SUMMED], found[4 * PANELS_SUMMED];
+    int from, i, j;
+    for (from = 0; from < n; from += PANELS_SUMMED) {
+        int m = n - from < PANELS_SUMMED ? n - from : PANELS_SUMMED;
+        const double *e = edge + from;
+        for (j = 0; j < 4; j++)
+            for (i = 0; i < m; i++)
+                t[j * m + i] = e[i] + gauss_node[j] * (e[i + 1] - e[i]);
+        g(context, 4 * (size_t)m, t, found);
+        for (i = 0; i < m; i++)
+            mass[from + i] = (e[i + 1] - e[i]) * (gauss_weight[0] * (found[i] + found[3 * m + i])
+                                                  + gauss_weight[1] * (found[m + i] + found[2 * m + i]));
+    }
 }
 
 void aspi_prepared_integrate(prepared_integrand *g, const void *context, double low, double power, double high,
@@ -87,7 +90,7 @@ void aspi_prepared_integrate(prepared_integrand *g, const void *context, double 
     edge[0] = low;
     for (;;) {
         int more = aspi_min_64(PANELS_CHUNK, (high - low) / longest + 1 - n);
-        more = more < PREPARED_PANELS / 2 - n ? more : PREPARED_PANELS / 2 - n;
+        more = more < PREPARED_PANELS * 3 / 4 - n ? more : PREPARED_PANELS * 3 / 4 - n;
         for (i = n; i <= n + more; i++)
             edge[i] = low + longest * i;
         g(context, (size_t)more + 1, edge + n, value + n);

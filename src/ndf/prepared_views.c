@@ -96,7 +96,7 @@ static double prepared_tail_row(const prepared_source *s, double t0, double mu, 
     prepared_sight sight = aspi_prepared_sight(s, mu);
     double unit = 0.5 * aspi_log_64(mu * mu + t0 * t0), rho = -aspi_log_64(PREPARED_CUT), cut;
     int i;
-    aspi_prepared_sight_panels(&sight, t0, .6, 1e-10, &panels);
+    aspi_prepared_sight_panels(&sight, t0, 0.6 / aspi_prepared_finer(s), 1e-10, &panels);
     prepared_radii(&panels, aspi_prepared_seen, &sight, PREPARED_SHARE_CELLS, y);
     for (i = 0; i <= PREPARED_SHARE_CELLS; i++)
         y[i] -= unit;
