@@ -105,8 +105,28 @@ static void check_polynomial(void)
     report("a piece's polynomial", differ);
 }
 
+/* Places, in order, of blocks of all lengths, from none to all. */
+static void check_places(void)
+{
+    int some[LONGEST], out[LONGEST + ASP_PLACES_MORE], n, i, differ = 0;
+    for (n = 0; n <= LONGEST; n++) {
+        size_t found, count = 0;
+        for (i = 0; i < n; i++)
+            some[i] = n % 5 == 0 ? n % 2 : uniform() < 0.2 * (n % 5) ? 1 + i : 0;
+        found = aspi_places_n((size_t)n, some, out);
+        for (i = 0; i < n; i++)
+            if (some[i]) {
+                differ += count >= found || out[count] != i;
+                count++;
+            }
+        differ += count != found;
+    }
+    report("places", differ);
+}
+
 int main(void)
 {
+    check_places();
     check_64();
     check_32();
     check_polynomial();

@@ -173,13 +173,23 @@ static void check_normal(const asp_ndf *k, const char *name)
     report("normals: chi-square of 1e7, 119 rings", name, chi, 1);
 }
 
+/* By how much the share that F = c phi + g sin(phi) has of the whole is not u2's. */
+static double azimuth_miss(double x, double y, double z, double c, double s, double u2)
+{
+    double g = s * hypot(x, y) / z, phi = atan2(y, x), end = c > g ? PI : acos(fmax(-1, -c / g));
+    double F = c * phi + g * sin(phi), most = c * end + g * sin(end);
+    /* the cancellation of F below the mean plane is this test's */
+    return z > 1e-12 && c > -0.9 * g ? fabs(F / most - (1 - 2 * u2)) : 0;
+}
+
 /* One view, all u1: the tail from below is drawn for u1 sigma > c. */
 static void check_visible(const asp_ndf *k, const char *name, double q, double sign, double bound)
 {
     static shares t, all;
     double mu = q * k->table[PREPARED_SCALE], s = 1 / sqrt(1 + mu * mu), c = sign * mu * s;
     double far = sigma(k, mu, -1) * s, area = (c > 0 ? c : 0) + far, chi = 0, z, last_share = 1, last_u = 1;
-    double azimuth = 0;
+    double azimuth = 0, single[2] = { 0, 0 };
+    asp_ndff narrow = asp_ndf_narrow(k);
     char of[96];
     int i;
     shares_make(&t, k, mu, k->table[PREPARED_SCALE]);
@@ -214,20 +224,17 @@ static void check_visible(const asp_ndf *k, const char *name, double q, double s
     report("visible: chi-square of 1e7, radius", of, chi, bound);
     /* the azimuth given the radius: F = c phi + g sin(phi) is linear in u2 */
     for (i = 0; i < 4000; i++) {
-        double u1 = uniform(), u2 = i % 4 ? uniform() : pow(10, -9 * uniform()), m[3], g, phi, end, F, most;
+        double u1 = uniform(), u2 = i % 4 ? uniform() : pow(10, -9 * uniform()), m[3];
+        float n[3];
         k->model->f64.visible(k, s, 0, c, u1, u2, m);
-        if (!(m[2] > 1e-12))
-            continue;
-        g = s * hypot(m[0], m[1]) / m[2];
-        phi = atan2(m[1], m[0]);
-        end = c > g ? PI : acos(fmax(-1, -c / g));
-        F = c * phi + g * sin(phi);
-        most = c * end + g * sin(end);
-        /* the cancellation of F below the mean plane is this test's */
-        if (c > -0.9 * g)
-            azimuth = larger(azimuth, fabs(F / most - (1 - 2 * u2)));
+        azimuth = larger(azimuth, azimuth_miss(m[0], m[1], m[2], c, s, u2));
+        k->model->f32.visible(&narrow, (float)s, 0, (float)c, (float)u1, (float)u2, n);
+        single[i % 4 == 0] = larger(single[i % 4 == 0],
+                                    azimuth_miss(n[0], n[1], n[2], (float)c, (float)s, (float)u2));
     }
     report("visible: azimuth", of, azimuth, 2e-12);
+    report("visible: azimuth, float32", of, single[0], 5e-6);
+    report("visible: azimuth, float32, near the end", of, single[1], 5e-5);
 }
 
 /* ------------------------------------------------------------------ float32, batches, ends */
