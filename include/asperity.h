@@ -131,9 +131,9 @@ asp_roughness asp_map_to_roughness(const asp_map *map);
 typedef struct asp_model asp_model;      /* what a distribution is: see asperity_ndf.h */
 
 #define ASP_SHAPE_NUMBERS 8
-#define ASP_TABLE_NUMBERS 1968
+#define ASP_TABLE_NUMBERS 2240
 
-/* A prepared distribution, about 16 KB. Read-only for callers; make it with a function below. */
+/* A prepared distribution, about 18 KB. Read-only for callers; make it with a function below. */
 typedef struct asp_ndf {
     const asp_model *model;
     asp_map map;                          /* p = M q + t */

@@ -78,6 +78,8 @@
 #undef ASP_PRECISION
 #include "ndf/histogram_rows.c"
 #undef ASP_PRECISION
+#include "ndf/patches.c"
+#undef ASP_PRECISION
 #include "ndf/pieces.c"
 #undef ASP_PRECISION
 #include "ndf/prepared.c"
@@ -96,11 +98,11 @@
 #undef ASP_PRECISION
 #include "ndf/student_forms.c"
 #undef ASP_PRECISION
-#include "ndf/student_guess.c"
-#undef ASP_PRECISION
 #include "ndf/student_prepare.c"
 #undef ASP_PRECISION
 #include "ndf/student_t.c"
+#undef ASP_PRECISION
+#include "ndf/student_tables.c"
 #undef ASP_PRECISION
 #include "ndf/tabulated.c"
 #undef ASP_PRECISION

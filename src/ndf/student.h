@@ -15,7 +15,7 @@
  * precision. Exactly, B d is, up to scale, sqrt(n) 2F1(1/2, n; n + 1; 1 - h^2/n) and P d^2 = 2F1(1, n -
  * 1/2; n + 1; 1 - h^2/n)/(2n), h = x/g, by Pfaff's transformation of the paper's eq. 13; both tend to
  * the error function's for n -> infinity. Errors of the fits beside rounding, for every n: P 1e-13 and
- * 2e-7, B 1e-13 and 2e-8, R 1e-13 and 6e-8. */
+ * 2e-7, B 1e-13 and 2e-8, R 1e-13. */
 #ifndef ASPI_STUDENT_H
 #define ASPI_STUDENT_H
 
@@ -38,31 +38,30 @@ enum {
     STUDENT_INV_BETA = 17,
     STUDENT_BELOW = 18,          /* 1/(2n - 1) */
     STUDENT_P32 = 32,            /* 12 coefficients of (1 - P)/(1 - d) for float32, */
-    STUDENT_B32 = 46,            /* 12 of B, */
-    STUDENT_Y32 = 58,            /* 12 of the quantile's R; */
-    STUDENT_P64 = 72,            /* 24 of the same for float64, */
-    STUDENT_B64 = 96,            /* 24 of B, */
-    STUDENT_Y64 = 120,           /* 26 of R */
+    STUDENT_B32 = 46,            /* 12 of B; */
+    STUDENT_P64 = 58,            /* 24 of the same for float64, */
+    STUDENT_B64 = 82,            /* 24 of B, */
+    STUDENT_Y64 = 106,           /* 26 of the quantile's R */
     /* sigma from above without a power (student_above), 0 where its polynomial does not reach 2e-7 */
-    STUDENT_ABOVE = 150,
-    STUDENT_LINEAR = 151,        /* A, B, K of its denominator */
-    STUDENT_S32 = 154,           /* its value at w = 0 for s = 1, 18 coefficients */
-    /* first guess of the search (student_guess), 0 where the longer one is needed */
-    STUDENT_SHORT = 174,
-    STUDENT_ONE_LESS = 175,      /* 1 - 1/n */
-    STUDENT_END = 176,           /* 2/end of the guess's argument: left, right */
-    STUDENT_LEFT = 178,          /* 6 x 5 coefficients */
-    STUDENT_RIGHT = 208,         /* 6 x 5; */
-    STUDENT_SCALE_RIGHT = 238    /* 14 of 1/(sqrt y_0 + e) */
+    STUDENT_ABOVE = 132,
+    STUDENT_LINEAR = 133,        /* A, B, K of its denominator */
+    STUDENT_S32 = 136,           /* its value at w = 0 for s = 1, 18 coefficients */
+    /* what follows is by tables (ndf/patches.h). The slope across the view, from u2: its size for the slope 0 along it */
+    STUDENT_ACROSS = 160,
+    /* From u1 the size of z: the slope along the view that a view along the normal sees, as r = sqrt(n log(1 + x^2/n)) */
+    STUDENT_ALONG = STUDENT_ACROSS + 256,
+    /* From z and the view, r with the sign of -x, in patches side by side. Over the view with p = a s/(c + a s) along
+     * 1 - (b p + d sqrt p), in STUDENT_VIEWS equal steps; over z, on each side of 0, from STUDENT_EDGES on */
+    STUDENT_PATCHES = STUDENT_ALONG + 256,
+    STUDENT_TABLES = 256 + 256 + 1536,
+    STUDENT_SHORT = STUDENT_ACROSS + STUDENT_TABLES,      /* 0 where STUDENT_PATCHES is too coarse */
+    STUDENT_VIEW,                /* a, b, d */
+    STUDENT_VIEWS = STUDENT_VIEW + 3,
+    STUDENT_RIGHT,               /* the first patch where u1 > 1/2 */
+    STUDENT_EDGES,               /* second and third edge for u1 < 1/2 and > 1/2, */
+    STUDENT_SCALES = STUDENT_EDGES + 4,   /* 2/width of the first, second, third patch likewise */
+    STUDENT_END = STUDENT_SCALES + 6
 };
-
-/* The guess: scale of the view's argument c/(c + STUDENT_VIEW s), slope at 0 on the right, largest
- * exponent (half the logarithm of the smallest share that it is fitted to). */
-#define STUDENT_VIEW 3.0
-#define STUDENT_SLOPE 1.3
-#define STUDENT_FAR_END 8.5
-#define STUDENT_DEGREE 6    /* coefficients along its own argument, */
-#define STUDENT_ACROSS 5    /* and along the view's */
 
 #define STUDENT_A 2.0
 
@@ -71,13 +70,12 @@ enum {
 #define STUDENT_Y_K 9.0
 #define STUDENT_LEAST_32 0x1p-40
 #define STUDENT_LEAST_64 0x1p-70
-#define STUDENT_Y_END_32 0.7454   /* l/(l + k) there, rounded up: 0.74533 */
-#define STUDENT_Y_END_64 0.8397   /* 0.83967 */
+#define STUDENT_Y_END_64 0.8397   /* l/(l + k) there, rounded up: 0.83967 */
 
 /* Fills out->table for n > 1/2, infinity included. */
 void aspi_student_prepare(asp_ndf *out, double n);
 
-/* The part of it in student_guess.c: from the rest of the table. */
+/* The part of it in student_tables.c: from the rest of the table. */
 void aspi_student_fit(asp_ndf *out);
 
 /* Values at 32 Chebyshev points of the first kind -> the first `count` power coefficients. */

@@ -5,6 +5,7 @@
  * table holds. */
 
 #include "asperity/facet.h"
+#include "patches.h"
 
 #ifndef STUDENT_KERNEL_NAMES
 #define STUDENT_KERNEL_NAMES
@@ -152,38 +153,44 @@ ASP_FN asp_v2 student_point(asp_real q, asp_real n, asp_real invn)
     return out;
 }
 
-/* The slope across the view, given the slope x along it, is sqrt(n + x^2) times a t-quantile of u:
- * first its q = m log(1 + y^2/m), then the homogeneous point of student_point, .x of either sign (to be
- * multiplied by sqrt n/sqrt(n + 1/2)). u = 1/2 gives 0. */
+/* The slope across the view, given the slope x along it, is sqrt(n + x^2) times a t-quantile of u. float32 has
+ * that times sqrt n in a table; float64 first its q = m log(1 + y^2/m), then the homogeneous point of
+ * student_point. u = 1/2 gives 0. */
+#if ASP_PRECISION == 64
 ASP_FN asp_real student_quantile(const asp_shape *k, asp_real u)
 {
-#if ASP_PRECISION == 64
-    const asp_real least = R(STUDENT_LEAST_64), scale = R(2.0 / STUDENT_Y_END_64);
     const asp_real *c = k->table + STUDENT_Y64;
-#else
-    const asp_real least = R(STUDENT_LEAST_32), scale = R(2.0 / STUDENT_Y_END_32);
-    const asp_real *c = k->table + STUDENT_Y32;
-#endif
-    asp_real v = aspi_max(aspi_min(u, R(1.0) - u), least);
+    asp_real v = aspi_max(aspi_min(u, R(1.0) - u), R(STUDENT_LEAST_64));
     asp_real h = R(1.0) - (v + v);
     asp_real l = -aspi_log_near(R(4.0) * v * (R(1.0) - v), -h * h);
-    asp_real t = scale * l / (l + R(STUDENT_Y_K)) - R(1.0);
-#if ASP_PRECISION == 64
+    asp_real t = R(2.0 / STUDENT_Y_END_64) * l / (l + R(STUDENT_Y_K)) - R(1.0);
     STUDENT_START(t, c, 25)
     STUDENT_STEP(c, 22)
     STUDENT_STEP(c, 20)
     STUDENT_STEP5(c, 10)
-#else
-    STUDENT_START(t, c, 11)
-#endif
     STUDENT_STEP5(c, 0)
     even = odd * t + even;
     return l * (even * even);
 }
+#else
+ASP_FN asp_real student_quantile(const asp_shape *k, asp_real u)
+{
+    return aspi_octaves(k->table + STUDENT_ACROSS, u);
+}
+#endif
 
+/* Of the slope across, in homogeneous form. */
 ASP_FN asp_v2 student_across(const asp_shape *k, asp_real q, asp_real u)
 {
-    asp_v2 p = student_point(q, k->table[STUDENT_Y_N], k->table[STUDENT_Y_N + 1]);
+    asp_v2 p;
+#if ASP_PRECISION == 64
+    p = student_point(q, k->table[STUDENT_Y_N], k->table[STUDENT_Y_N + 1]);
+    p.x *= k->table[STUDENT_Y_WIDTH];
+#else
+    (void)k;
+    p.x = q;
+    p.y = R(1.0);
+#endif
     p.x = u > R(0.5) ? -p.x : p.x;
     return p;
 }
