@@ -76,7 +76,12 @@ typedef struct asp_reflectionf {
     float wo_x, m_z2, wo_y, cosine2, wo_z, pdf, sigma_i, sigma_o;
 } asp_reflectionf;
 
-/* The same of a block. */
+/* What a facet that refracts has to know: a unit visible normal seen from wi, its density of normals, and the
+ * projected area from wi. */
+typedef struct asp_facet { double m_x, density, sigma_i, m_z, m_y; } asp_facet;
+typedef struct asp_facetf { float m_x, density, sigma_i, m_z, m_y; } asp_facetf;
+
+/* The reflections of a block. */
 typedef struct asp_reflections {
     double *wo_x, *m_z2, *wo_y, *cosine2, *wo_z, *pdf, *sigma_i, *sigma_o;
 } asp_reflections;
@@ -91,6 +96,7 @@ typedef struct asp_reflectionsf {
  *     visible    a unit normal seen from w
  *     normal     a unit normal with density D(m) m.z
  *     reflect    visible, mirror wi in it, and what is known of both directions
+ *     facet      visible, density and sigma at once, bit for bit
  * Loops take a block of n elements, n <= ASP_BLOCK (number.h: 256 in float32, 128 in float64), and
  * their outputs do not overlap anything else. Vectors go number by number: small structs of floats pass
  * through memory in the usual calling convention and stall there. */
@@ -101,6 +107,8 @@ typedef struct asp_ndf_ops {
     void (*normal)(const asp_ndf *k, double u1, double u2, double m[3]);
     void (*reflect)(const asp_ndf *k, double wi_x, double wi_y, double wi_z, double u1, double u2,
                     asp_reflection *out);
+    void (*facet)(const asp_ndf *k, double wi_x, double wi_y, double wi_z, double u1, double u2,
+                  asp_facet *out);
     void (*density_n)(const asp_ndf *k, size_t n, const double *mx, const double *my,
                       const double *mz, double *out);
     void (*sigma_n)(const asp_ndf *k, size_t n, double sign, const double *wx, const double *wy,
@@ -121,6 +129,8 @@ typedef struct asp_ndf_opsf {
     void (*normal)(const asp_ndff *k, float u1, float u2, float m[3]);
     void (*reflect)(const asp_ndff *k, float wi_x, float wi_y, float wi_z, float u1, float u2,
                     asp_reflectionf *out);
+    void (*facet)(const asp_ndff *k, float wi_x, float wi_y, float wi_z, float u1, float u2,
+                  asp_facetf *out);
     void (*density_n)(const asp_ndff *k, size_t n, const float *mx, const float *my,
                       const float *mz, float *out);
     void (*sigma_n)(const asp_ndff *k, size_t n, float sign, const float *wx, const float *wy,
@@ -177,7 +187,7 @@ void asp_ndf_stretch(asp_ndf *out, double by);
 #endif
 
 #define ASP_NDF_OPS_(n, s) { n##density_1##s, n##sigma_1##s, n##visible_1##s, n##normal_1##s, n##reflect_1##s, \
-    n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s, n##reflect_n##s }
+    n##facet_1##s, n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s, n##reflect_n##s }
 #define ASP_NDF_OPS_LATTICE(n, lattice) ASP_NDF_OPS_(n##_, _64), ASP_NDF_OPS_(n##_, _32), lattice
 #define ASP_NDF_OPS(n) ASP_NDF_OPS_LATTICE(n, NULL)
 

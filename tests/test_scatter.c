@@ -317,6 +317,56 @@ static double white(const void *context, double nm)
     return *(const double *)context;
 }
 
+/* The weight of what crosses against B(a, b) a / eta^2 by the gamma function; errors over 1 + |ln B|. */
+static void check_crossing(void)
+{
+    static const double alphas[] = { 0.05, 0.3, 1.0, 4.0 }, etas[] = { 1.5, 0.6 };
+    double worst = 0, worstf = 0;
+    uint64_t state = 3;
+    int i, count = 0, far = 0;
+    for (i = 0; i < 200000; i++) {
+        double eta = etas[i / 4 % 2], z = next(&state), u1 = next(&state), u2 = next(&state), u3 = next(&state), e, w;
+        asp_map map;
+        asp_ndf surface;
+        static asp_material mat[8];
+        static asp_materialf matf[8];
+        int j = i % 8;
+        asp_vec3 wi = direction(acos(z), 6 * u3);
+        asp_vec3f wif = { (float)wi.x, (float)wi.y, (float)wi.z }, back;
+        asp_bsdf_sample s;
+        asp_bsdf_samplef f;
+        if (i < 8) {
+            asp_map_from_roughness(alphas[j % 4], alphas[j % 4], 0, 0, 0, &map, NULL);
+            asp_ndf_make(asp_find_model(NULL, "ggx"), &map, NULL, &surface, NULL);
+            mat[j] = asp_dielectric(&surface, eta, 0, ASP_RADIANCE, 0);
+            matf[j] = asp_material_narrow(&mat[j]);
+        }
+        s = asp_sample_lobe(&mat[j], wi, u1, u2, u3);
+        f = asp_sample_lobef(&matf[j], wif, (float)u1 * 0.99999f, (float)u2, (float)u3);
+        if (s.wo.z < 0 && s.weight.r > 0) {
+            asp_vec3 below = { -s.wo.x, -s.wo.y, -s.wo.z };
+            double a = asp_sigma(&mat[j].ndf, wi) / wi.z, b = asp_sigma(&mat[j].ndf, below) / below.z;
+            e = lgamma(a) + lgamma(b) - lgamma(a + b);
+            w = exp(e) * a / (eta * eta);
+            worst = fmax(worst, fabs(s.weight.r / w - 1) / (1 + fabs(e)));
+            far += a > 2 || b > 2;
+            count++;
+        }
+        if (f.wo.z < 0 && f.weight.r > 1e-15f) {
+            double a, b;
+            back = (asp_vec3f){ -f.wo.x, -f.wo.y, -f.wo.z };
+            a = (double)asp_sigmaf(&matf[j].ndf, wif) / (double)wif.z;
+            b = (double)asp_sigmaf(&matf[j].ndf, back) / (double)back.z;
+            e = lgamma(a) + lgamma(b) - lgamma(a + b);
+            w = exp(e) * a / (eta * eta);
+            worstf = fmax(worstf, fabs((double)f.weight.r / w - 1) / (1 + fabs(e)));
+        }
+    }
+    printf("       %d crossings, %d of them far\n", count, far);
+    expect(count > 100000 && far > 10000 && worst < 1e-10, "what crosses: Euler's beta, float64", worst);
+    expect(worstf < 1e-6, "what crosses: Euler's beta, float32", worstf);
+}
+
 static void check_spectrum(void)
 {
     double worst = 0, back = 0, one = 0.37;
@@ -473,6 +523,7 @@ int main(void)
     check_limits();
     check_walk();
     check_bounded();
+    check_crossing();
     check_spectrum();
     check_diffuse();
     check_eon();

@@ -6,6 +6,7 @@
 #define ASP_FRESNEL_NAMES
 #define aspi_unit_cosine ASP_NAME(aspi_unit_cosine)
 #define aspi_fresnel_dielectric ASP_NAME(aspi_fresnel_dielectric)
+#define aspi_dielectric ASP_NAME(aspi_dielectric)
 #define aspi_fresnel_conductor ASP_NAME(aspi_fresnel_conductor)
 #define aspi_conductor_ratio ASP_NAME(aspi_conductor_ratio)
 #define aspi_fresnel_conductor_at ASP_NAME(aspi_fresnel_conductor_at)
@@ -27,8 +28,9 @@ ASP_FN asp_real aspi_unit_cosine(asp_real c)
     return low > R(1.0) ? R(1.0) : low;
 }
 
-/* Walter et al. 2007, eq. 22, over one denominator. g^2 < 0 is total internal reflection. */
-ASP_FN asp_real aspi_fresnel_dielectric(asp_real cosine, asp_real eta)
+/* Walter et al. 2007, eq. 22, over one denominator, as .x; .y is its g, eta times the cosine on the other side.
+ * g^2 < 0 is total internal reflection. */
+ASP_FN asp_v2 aspi_dielectric(asp_real cosine, asp_real eta)
 {
     asp_real c = aspi_unit_cosine(cosine);
     /* each form keeps its digits where the other cancels: eta near 1, and eta near 0 */
@@ -41,8 +43,13 @@ ASP_FN asp_real aspi_fresnel_dielectric(asp_real cosine, asp_real eta)
     asp_real over = sum * sum * (q * q);
     asp_real f = R(0.5) * (difference * difference) * (q * q + p * p)
                / (over < R(1e-30) ? R(1e-30) : over);
-    return g2 < R(0.0) ? R(1.0) : f;
+    asp_v2 out;
+    out.x = g2 < R(0.0) ? R(1.0) : f;
+    out.y = g;
+    return out;
 }
+
+ASP_FN asp_real aspi_fresnel_dielectric(asp_real cosine, asp_real eta) { return aspi_dielectric(cosine, eta).x; }
 
 /* Unpolarised reflectance of eta + i k at the squared cosine c2: Rs = (t1 - t2)/(t1 + t2),
  * Rp = Rs (t3 - t4)/(t3 + t4), and their mean .x/.y. */

@@ -173,6 +173,17 @@ ASP_CLONES_SINGLE static void ndf_reflect_1(const asp_shape *k, asp_real wx, asp
     out->sigma_o = ndf_sigma_at(k, aspi_view(k, wo));
 }
 
+ASP_CLONES_SINGLE static void ndf_facet_1(const asp_shape *k, asp_real wx, asp_real wy, asp_real wz,
+                                          asp_real u1, asp_real u2, asp_seen *out)
+{
+    asp_v3 wi = aspi_vector(wx, wy, wz), m = ndf_world_visible(k, wi, u1, u2);
+    out->m_x = m.x;
+    out->m_y = m.y;
+    out->m_z = m.z;
+    out->sigma_i = ndf_sigma_at(k, aspi_view(k, wi));
+    out->density = ndf_world_density(k, m);
+}
+
 /* ---- loops */
 
 /* A distribution whose formula is long may bring this loop, sigma's or the normals' itself, in stages: it

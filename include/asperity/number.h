@@ -87,6 +87,7 @@
 #define ndf_visible_1 ASP_NDF_NAME(_visible_1)
 #define ndf_normal_1 ASP_NDF_NAME(_normal_1)
 #define ndf_reflect_1 ASP_NDF_NAME(_reflect_1)
+#define ndf_facet_1 ASP_NDF_NAME(_facet_1)
 #define ndf_density_n ASP_NDF_NAME(_density_n)
 #define ndf_sigma_n ASP_NDF_NAME(_sigma_n)
 #define ndf_visible_n ASP_NDF_NAME(_visible_n)
@@ -112,6 +113,7 @@
 #undef asp_c3
 #undef asp_shape
 #undef asp_mirrored
+#undef asp_seen
 #undef asp_mirrored_s
 #if ASP_PRECISION == 64
 #define ASP_SUFFIX _64
@@ -122,6 +124,7 @@
 #define asp_c3 asp_rgb
 #define asp_shape asp_ndf
 #define asp_mirrored asp_reflection
+#define asp_seen asp_facet
 #define asp_mirrored_s asp_reflections
 #elif ASP_PRECISION == 32
 #define ASP_SUFFIX _32
@@ -132,6 +135,7 @@
 #define asp_c3 asp_rgbf
 #define asp_shape asp_ndff
 #define asp_mirrored asp_reflectionf
+#define asp_seen asp_facetf
 #define asp_mirrored_s asp_reflectionsf
 #else
 #error "define ASP_PRECISION as 64 or 32"

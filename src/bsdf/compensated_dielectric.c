@@ -92,6 +92,7 @@ ASP_RECORD asp_bsdf asp_bsdf_compensated_dielectric = {
 #include "bsdf/bsdf_number.h"
 #include "bsdf/energy_at.h"
 #include "bsdf/reflection.h"
+#include "bsdf/refraction.h"
 
 #ifndef COMPENSATED_DIELECTRIC_NAMES
 #define COMPENSATED_DIELECTRIC_NAMES
@@ -111,24 +112,19 @@ ASP_FN const asp_real *energy_of(const asp_mat *mat, asp_real z)
 /* E on the side of w. */
 ASP_FN asp_real side_energy(const asp_mat *mat, asp_v3 w)
 {
-    asp_real turned = w.z < R(0.0) && !(mat->a.r > R(0.0)) ? R(-1.0) : R(1.0);
-    const asp_real *table = energy_of(mat, w.z);
-    w.x = turned * w.x;
-    w.y = turned * w.y;
-    w.z = aspi_abs(w.z);
-    return aspi_energy_at(mat, table, w);
+    asp_v3 v = aspi_turned(w, w.z < R(0.0) ? R(-1.0) : R(1.0), mat->a.r > R(0.0));
+    return aspi_energy_at(mat, energy_of(mat, w.z), v);
 }
 
 /* The lobe of what is given back, without a cosine. */
 ASP_FN asp_real given_back(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 {
     int inside = wi.z < R(0.0), crosses = inside != (wo.z < R(0.0));
-    asp_real eta2 = mat->c.r * mat->c.r, A, scale = R(1.0);
+    int scales = crosses && mat->transport != ASP_IMPORTANCE && !(mat->a.r > R(0.0));
+    asp_real A, scale = aspi_crossing_scale(inside ? R(1.0) / mat->c.r : mat->c.r, scales);
     if (mat->b.r == R(COMPENSATED_TURQUIN) || mat->c.r == R(1.0) || wi.z == R(0.0) || wo.z == R(0.0))
         return R(0.0);
     A = crosses ? (inside ? mat->d.g : mat->d.r) : (inside ? mat->b.b : mat->b.g);
-    if (crosses && mat->transport != ASP_IMPORTANCE && !(mat->a.r > R(0.0)))
-        scale = inside ? eta2 : R(1.0) / eta2;
     return scale * R(1.0 / ASP_PI) * A * (R(1.0) - side_energy(mat, wi)) * (R(1.0) - side_energy(mat, wo));
 }
 

@@ -47,25 +47,32 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #else
 #include "asperity/elementary.h"
 #include "bsdf/bsdf_number.h"
+#include "bsdf/ops.h"
 #include "bsdf/reflection.h"
 #include "bsdf/refraction.h"
 
 #ifndef DIELECTRIC_NAMES
 #define DIELECTRIC_NAMES
-#define turned ASP_NDF_NAME(_turned)
 #define case_of ASP_NDF_NAME(_case)
 #define make_case ASP_NDF_NAME(_make)
 #define refracted_masking ASP_NDF_NAME(_refracted_masking)
-#define crossing_scale ASP_NDF_NAME(_crossing)
 #define stirling ASP_NDF_NAME(_stirling)
 #define beta ASP_NDF_NAME(_beta)
+#define beta_near ASP_NDF_NAME(_beta_near)
+#define is_near ASP_NDF_NAME(_is_near)
+#define sheet ASP_NDF_NAME(_sheet)
+#define areas ASP_NDF_NAME(_areas)
+#define leaves ASP_NDF_NAME(_leaves)
 #define joint_reflected ASP_NDF_NAME(_joint_reflected)
 #define facet_density ASP_NDF_NAME(_facet_density)
-#define surface_density ASP_NDF_NAME(_surface_density)
-#define surface_sigma ASP_NDF_NAME(_surface_sigma)
 #define index_of ASP_NDF_NAME(_index_of)
 #define bend ASP_NDF_NAME(_bend)
 #define sample_weight ASP_NDF_NAME(_sample_weight)
+#define scales ASP_NDF_NAME(_scales)
+#define sample_as ASP_NDF_NAME(_sample_as)
+#define crossing_weight ASP_NDF_NAME(_crossing_weight)
+#define staying_weight ASP_NDF_NAME(_staying_weight)
+#define beta_n ASP_NDF_NAME(_beta_n)
 #endif
 
 /* A pair of directions with wi above: which facet joins them, and F there. */
@@ -76,23 +83,8 @@ typedef struct case_of {
     int refracts, dark;
 } case_of;
 
-#define OPS ASP_NAME(OPS)
-#define OPS_64(k) ((k)->model->f64)
-#define OPS_32(k) ((k)->model->f32)
-
-ASP_FN asp_real surface_density(const asp_shape *k, asp_v3 m) { return OPS(k).density(k, m.x, m.y, m.z); }
-
-ASP_FN asp_real surface_sigma(const asp_shape *k, asp_v3 w) { return OPS(k).sigma(k, w.x, w.y, w.z); }
-
-/* As seen from the side of `sign`: by a point reflection, or for a sheet by a mirror. */
-ASP_FN asp_v3 turned(asp_v3 w, asp_real sign, int thin)
-{
-    asp_real across = thin ? R(1.0) : sign;
-    w.x = across * w.x;
-    w.y = across * w.y;
-    w.z = sign * w.z;
-    return w;
-}
+/* F with the reflections inside a sheet summed up. */
+ASP_FN asp_real sheet(asp_real F, int thin) { return thin ? R(2.0) * F / (R(1.0) + F) : F; }
 
 ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 {
@@ -100,8 +92,8 @@ ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
     asp_real sign = wi.z < R(0.0) ? R(-1.0) : R(1.0);
     case_of k;
     k.eta = sign < R(0.0) && !thin ? R(1.0) / mat->c.r : mat->c.r;
-    k.wi = turned(wi, sign, thin);
-    k.wo = turned(wo, sign, thin);
+    k.wi = aspi_turned(wi, sign, thin);
+    k.wo = aspi_turned(wo, sign, thin);
     k.refracts = k.wo.z < R(0.0);
     if (thin && k.refracts) {
         k.wo.z = -k.wo.z;
@@ -111,12 +103,10 @@ ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
     }
     k.c = aspi_dot(k.wi, k.m);
     k.wm = aspi_dot(k.wo, k.m);
-    k.F = aspi_fresnel_dielectric(k.c, k.eta);
-    if (thin)
-        k.F = R(2.0) * k.F / (R(1.0) + k.F);
+    k.F = sheet(aspi_fresnel_dielectric(k.c, k.eta), thin);
     k.dark = !(k.c > R(0.0) && k.m.z > ASP_FLAT && k.wi.z > R(0.0) && k.wo.z != R(0.0))
           || mat->c.r == R(1.0);
-    k.sigma_i = surface_sigma(&mat->ndf, k.wi);
+    k.sigma_i = aspi_sigma_of(&mat->ndf, k.wi);
     return k;
 }
 
@@ -135,11 +125,12 @@ ASP_FN asp_real stirling(asp_real i)
     return i * (R(1.0 / 12.0) + i2 * s);
 }
 
-/* Euler's B(a, b), a and b at least 1: brought to a + n, b + n by the recurrence. With x = B/A the power is
+/* Euler's B(a, b), a and b at least 1: brought to a + n, b + n by the recurrence. With x = B/A <= 1 the power is
  * exp(-((A + B) log(1 + x) - B log x)), whose error by that of x vanishes. Relative error 1e-11 and 5e-7 per
  * 1 + |ln B|; float32 answers 0 below about 1e-20. */
-ASP_FN asp_real beta(asp_real a, asp_real b)
+ASP_FN asp_real beta(asp_real p, asp_real q)
 {
+    asp_real a = aspi_max(p, q), b = aspi_min(p, q);
     int low = a + b < R(1e6);
     asp_real over = R(1.0), under = R(1.0), A, B, S, one, x, e;
     int i;
@@ -161,23 +152,66 @@ ASP_FN asp_real beta(asp_real a, asp_real b)
     return low ? x : R(0.0);
 }
 
-/* G2 of light that crosses: the one direction sees from above, the other from below, so that heights
- * are opposed. Heitz 2014, sec. 5.4 (after Dupuy): B(1 + Lambda_i, 1 + Lambda_o). V-cavities: what both
- * sides leave of a groove, G1 + G1 - 1. */
+/* The same for a and b within [1, 2], float32: reciprocal gamma functions as polynomials (scripts/series.py),
+ * relative error 4e-7. */
+ASP_FN int is_near(asp_real a, asp_real b) { return ASP_PRECISION == 32 && aspi_max(a, b) <= R(2.0); }
+
+ASP_FN asp_real beta_near(asp_real a, asp_real b)
+{
+    asp_real x = a - R(1.5), y = b - R(1.5), s = a + b - R(3.0);
+    asp_real x2 = x * x, y2 = y * y, s2 = s * s, ex, ox, ey, oy, es, os;
+    ex = R(0.006062104116);
+    ey = R(0.006062104116);
+    es = R(0.0001414160983);
+    ox = R(0.002203451363);
+    oy = R(0.002203451363);
+    os = R(-1.148210216e-6);
+    ex = ex * x2 + R(0.05105268071);
+    ey = ey * y2 + R(0.05105268071);
+    es = es * s2 + R(0.0005587637258);
+    ox = ox * x2 + R(-0.04217049317);
+    oy = oy * y2 + R(-0.04217049317);
+    os = os * s2 + R(-0.0006791526744);
+    ex = ex * x2 + R(-0.5266587205);
+    ey = ey * y2 + R(-0.5266587205);
+    es = es * s2 + R(-0.03151665695);
+    ox = ox * x2 + R(0.1751030837);
+    oy = oy * y2 + R(0.1751030837);
+    os = os * s2 + R(0.006935187604);
+    ex = ex * x2 + R(1.128379201);
+    ey = ey * y2 + R(1.128379201);
+    es = es * s2 + R(0.1141498354);
+    ox = ox * x2 + R(-0.0411745462);
+    oy = oy * y2 + R(-0.0411745462);
+    os = os * s2 + R(0.03847059524);
+    es = es * s2 + R(0.4999999876);
+    os = os * s2 + R(-0.4613921502);
+    return (os * s + es) / ((ox * x + ex) * (oy * y + ey));
+}
+
+/* Masked areas over cosines, 1 + Lambda of both directions of light that crosses: the one sees from above, the
+ * other from below. */
+ASP_FN asp_v2 areas(const asp_shape *shape, const case_of *k, asp_real sigma_o, int mask)
+{
+    asp_v2 out;
+    out.x = aspi_masked(shape, k->wi, k->sigma_i, mask) / k->wi.z;
+    out.y = aspi_masked(shape, aspi_turned(k->wo, R(-1.0), 0), sigma_o, mask) / aspi_abs(k->wo.z);
+    return out;
+}
+
+/* G2 of light that crosses. Heitz 2014, sec. 5.4 (after Dupuy): B(1 + Lambda_i, 1 + Lambda_o). V-cavities: what both sides leave of a groove, G1 + G1 - 1. */
 ASP_FN asp_real refracted_masking(const asp_shape *shape, const case_of *k, asp_real sigma_o, int mask)
 {
     asp_real ci = k->wi.z, co = aspi_abs(k->wo.z);
-    asp_v3 below = turned(k->wo, R(-1.0), 0);
-    asp_real a = aspi_masked(shape, k->wi, k->sigma_i, mask) / ci;
-    asp_real b = aspi_masked(shape, below, sigma_o, mask) / co;
+    asp_v2 a = areas(shape, k, sigma_o, mask);
     if ((mask & 15) == ASP_MASK_UNCORRELATED)
-        return R(1.0) / (a * b);
+        return R(1.0) / (a.x * a.y);
     if ((mask & 15) == ASP_MASK_V_CAVITY) {
         asp_real open_i = aspi_min(R(1.0), R(2.0) * k->m.z * ci / k->c);
         asp_real open_o = aspi_min(R(1.0), R(2.0) * k->m.z * co / aspi_max(-k->wm, ASP_SMALLEST));
         return aspi_max(open_i + open_o - R(1.0), R(0.0));
     }
-    return beta(a, b);
+    return is_near(a.x, a.y) ? beta_near(a.x, a.y) : beta(a.x, a.y);
 }
 
 /* G2 / (ci co) of a reflection. */
@@ -187,11 +221,7 @@ ASP_FN asp_real joint_reflected(const asp_shape *shape, const case_of *k, asp_re
     return aspi_joint(k->wi.z, k->wo.z, si, so, k->m.z, k->c, k->c, mask);
 }
 
-ASP_FN asp_real crossing_scale(const asp_mat *mat, const case_of *k)
-{
-    return mat->transport == ASP_IMPORTANCE || mat->a.r > R(0.0) ? R(1.0)
-                                                                   : R(1.0) / (k->eta * k->eta);
-}
+ASP_FN int scales(const asp_mat *mat) { return mat->transport != ASP_IMPORTANCE && !(mat->a.r > R(0.0)); }
 
 /* f times |cos_o|^cosine. */
 static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, asp_c3 *out)
@@ -200,17 +230,17 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
     asp_real nothing = k.c * R(0.0), f = nothing, D, co = aspi_abs(wo->z);
     if (!k.dark) {
         int thin = mat->a.r > R(0.0);
-        D = surface_density(&mat->ndf, k.m);
+        D = aspi_density_of(&mat->ndf, k.m);
         if (!k.refracts || thin) {
-            asp_real so = surface_sigma(&mat->ndf, k.wo);
+            asp_real so = aspi_sigma_of(&mat->ndf, k.wo);
             asp_real share = k.refracts ? R(1.0) - k.F : k.F;
             f = share * aspi_finite(R(0.25) * D * joint_reflected(&mat->ndf, &k, so, mat->mask));
             f = cosine ? f * co : f;
         } else if (k.wm < R(0.0)) {
-            asp_real so = surface_sigma(&mat->ndf, turned(k.wo, R(-1.0), 0));
+            asp_real so = aspi_sigma_of(&mat->ndf, aspi_turned(k.wo, R(-1.0), 0));
             asp_real G2 = refracted_masking(&mat->ndf, &k, so, mat->mask);
             f = (R(1.0) - k.F) * aspi_finite(k.c * D * aspi_bent_density(k.c, k.wm, k.eta) * G2 / k.wi.z)
-              * crossing_scale(mat, &k);
+              * aspi_crossing_scale(k.eta, scales(mat));
             f = cosine ? f : f / co;
         }
     }
@@ -234,7 +264,7 @@ static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
     int thin = mat->a.r > R(0.0);
     if (k.dark || (k.refracts && !thin && k.wm >= R(0.0)))
         return k.c * R(0.0);
-    return facet_density(&k, surface_density(&mat->ndf, k.m), thin);
+    return facet_density(&k, aspi_density_of(&mat->ndf, k.m), thin);
 }
 
 /* The index of the other side over that of the side of `sign`. */
@@ -243,81 +273,134 @@ ASP_FN asp_real index_of(asp_real sign, asp_real eta, asp_real inverse, int thin
     return sign < R(0.0) && !thin ? inverse : eta;
 }
 
-/* Reflection or refraction at the facet m by F; wo.z is of the side that it should be on unless single
- * scattering loses this light. */
-ASP_FN case_of bend(asp_v3 v, asp_v3 m, asp_real eta, asp_real u3, int thin)
+/* Reflection or refraction at the facet m by F (Walter et al. 2007, eqs. 39-40); wo, a unit vector to rounding,
+ * is on the side that it should be on unless single scattering loses this light. */
+ASP_FN case_of bend(asp_v3 v, asp_v3 m, asp_real eta, asp_real inverse, asp_real u3, int thin)
 {
     case_of k;
+    asp_v2 f;
+    asp_real by, of_v, cosine;
     k.wi = v;
     k.m = m;
     k.eta = eta;
     k.c = aspi_dot(v, m);
-    k.F = aspi_fresnel_dielectric(k.c, eta);
-    if (thin)
-        k.F = R(2.0) * k.F / (R(1.0) + k.F);
+    f = aspi_dielectric(k.c, eta);
+    k.F = sheet(f.x, thin);
     k.refracts = u3 >= k.F;
-    if (k.refracts && !thin)
-        k.wo = aspi_refract(v, m, eta);
-    else
-        k.wo = aspi_reflect(v, m);
-    k.wm = aspi_dot(k.wo, m);
+    cosine = f.y * inverse;
+    by = k.refracts && !thin ? k.c * inverse - cosine : R(2.0) * k.c;
+    of_v = k.refracts && !thin ? inverse : R(1.0);
+    k.wm = k.refracts && !thin ? -cosine : k.c;
+    k.wo.x = by * m.x - of_v * v.x;
+    k.wo.y = by * m.y - of_v * v.y;
+    k.wo.z = by * m.z - of_v * v.z;
     return k;
 }
 
-/* f cos / pdf, where F cancels; k.wo.z of a sheet is above. */
-ASP_FN asp_real sample_weight(const asp_shape *shape, const case_of *k, asp_real sigma_o, asp_real scale, int thin,
-                              int mask)
+/* What leaves, of length 1: a step towards 1/|w| from 1, |w| is 1 to rounding. */
+ASP_FN asp_v3 leaves(asp_v3 w)
 {
-    asp_real w;
-    if (!k->refracts || thin)
-        w = k->sigma_i * aspi_abs(k->wo.z) * joint_reflected(shape, k, sigma_o, mask);
-    else
-        w = refracted_masking(shape, k, sigma_o, mask) * k->sigma_i / k->wi.z * scale;
+    asp_real by = R(1.5) - R(0.5) * aspi_dot(w, w);
+    w.x = by * w.x;
+    w.y = by * w.y;
+    w.z = by * w.z;
     return w;
 }
 
+/* f cos / pdf, where F cancels, of light that crosses and of light that stays; k.wo.z of a sheet is above. */
+ASP_FN asp_real crossing_weight(const case_of *k, asp_real G2, asp_real scale)
+{
+    return G2 * (k->sigma_i / k->wi.z * scale);
+}
+
+ASP_FN asp_real staying_weight(const asp_shape *shape, const case_of *k, asp_real sigma_o, int mask)
+{
+    return k->sigma_i * aspi_abs(k->wo.z) * joint_reflected(shape, k, sigma_o, mask);
+}
+
+ASP_FN asp_real sample_weight(const asp_shape *shape, const case_of *k, asp_real sigma_o, asp_real scale, int thin,
+                              int mask)
+{
+    if (!k->refracts || thin)
+        return staying_weight(shape, k, sigma_o, mask);
+    return crossing_weight(k, refracted_masking(shape, k, sigma_o, mask), scale);
+}
+
 /* A visible normal, then reflection or refraction by F. */
-ASP_CLONES_SINGLE static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2,
-                                          asp_real u3, asp_sampled *out)
+ASP_FN void sample_as(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2, asp_real u3, int thin, int mask,
+                      asp_sampled *out)
 {
     const asp_shape *shape = &mat->ndf;
-    int thin = mat->a.r > R(0.0);
-    asp_real sign = wi->z < R(0.0) ? R(-1.0) : R(1.0), weight, normal[3];
-    asp_real nothing = (wi->x + wi->y + wi->z) * R(0.0);
-    asp_v3 v = turned(*wi, sign, thin), wo, seen;
+    asp_real sign = wi->z < R(0.0) ? R(-1.0) : R(1.0), index = mat->c.r, inverse = R(1.0) / mat->c.r;
+    asp_real nothing = (wi->x + wi->y + wi->z) * R(0.0), weight;
+    asp_seen facet;
+    asp_v3 v = aspi_turned(*wi, sign, thin), wo, seen;
     case_of k;
     out->pdf = nothing;
-    out->wo = turned(*wi, R(-1.0), 0);
     out->weight.r = out->weight.g = out->weight.b = nothing;
-    if (mat->c.r == R(1.0)) {
-        /* nothing is there: the light goes on */
-        out->weight.r = out->weight.g = out->weight.b = R(1.0) + nothing;
+    if (v.z <= R(0.0) || nothing != R(0.0)) {
+        out->wo = aspi_turned(*wi, R(-1.0), 0);
         return;
     }
-    if (v.z <= R(0.0) || nothing != R(0.0))
-        return;
-    OPS(shape).visible(shape, v.x, v.y, v.z, u1, u2, normal);
-    k = bend(v, aspi_vector(normal[0], normal[1], normal[2]),
-             index_of(sign, mat->c.r, R(1.0) / mat->c.r, thin), u3, thin);
+    ASPI_OPS(shape).facet(shape, v.x, v.y, v.z, u1, u2, &facet);
+    k = bend(v, aspi_vector(facet.m_x, facet.m_y, facet.m_z), index_of(sign, index, inverse, thin),
+             index_of(sign, inverse, index, thin), u3, thin);
     wo = k.wo;
     if (k.refracts && thin)
         wo.z = -wo.z;
-    out->wo = turned(wo, sign, thin);
+    out->wo = aspi_turned(leaves(wo), sign, thin);
     if (k.refracts ? wo.z >= R(0.0) : wo.z <= R(0.0))
         return; /* into the surface again: single scattering loses this light */
-    k.sigma_i = surface_sigma(shape, v);
+    k.sigma_i = facet.sigma_i;
     if (thin)
         k.wo.z = aspi_abs(wo.z); /* as make_case does */
-    out->pdf = facet_density(&k, surface_density(shape, k.m), thin);
+    out->pdf = facet_density(&k, facet.density, thin);
     if (out->pdf <= R(0.0))
         return;
-    seen = turned(k.wo, k.refracts && !thin ? R(-1.0) : R(1.0), 0);
-    weight = surface_sigma(shape, seen);
-    weight = mat->mask == 0 /* a constant spares the default the others' arithmetic */
-           ? sample_weight(shape, &k, weight, crossing_scale(mat, &k), thin, 0)
-           : sample_weight(shape, &k, weight, crossing_scale(mat, &k), thin, mat->mask);
+    seen = aspi_turned(k.wo, k.refracts && !thin ? R(-1.0) : R(1.0), 0);
+    weight = sample_weight(shape, &k, aspi_sigma_of(shape, seen), aspi_crossing_scale(k.eta, scales(mat)), thin, mask);
     out->weight.r = out->weight.g = out->weight.b = weight;
 }
+
+ASP_CLONES_SINGLE static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2,
+                                          asp_real u3, asp_sampled *out)
+{
+    if (mat->c.r == R(1.0)) {
+        /* nothing is there: the light goes on */
+        out->pdf = (wi->x + wi->y + wi->z) * R(0.0);
+        out->wo = aspi_turned(*wi, R(-1.0), 0);
+        out->weight.r = out->weight.g = out->weight.b = R(1.0) + out->pdf;
+    } else if (mat->a.r > R(0.0)) {
+        sample_as(mat, wi, u1, u2, u3, 1, mat->mask, out);
+    } else if (mat->mask == 0) {
+        sample_as(mat, wi, u1, u2, u3, 0, 0, out); /* constants spare the default the others' arithmetic */
+    } else {
+        sample_as(mat, wi, u1, u2, u3, 0, mat->mask, out);
+    }
+}
+
+/* beta of a block whose elements with far[i] != 0 matter and are not near: those are collected. */
+ASP_FN void beta_n(size_t n, const asp_real *ASP_RESTRICT a, const asp_real *ASP_RESTRICT b,
+                   const int *ASP_RESTRICT far, asp_real *ASP_RESTRICT out)
+{
+    asp_real x[ASP_BLOCK], y[ASP_BLOCK];
+    int place[ASP_BLOCK];
+    size_t i, count;
+    for (i = count = 0; i < n; i++) {
+        place[count] = (int)i;
+        count += far[i] != 0;
+    }
+    for (i = 0; i < count; i++) {
+        x[i] = a[place[i]];
+        y[i] = b[place[i]];
+    }
+    ASP_IN_PLACE
+    for (i = 0; i < count; i++)
+        x[i] = beta(x[i], y[i]);
+    for (i = 0; i < count; i++)
+        out[place[i]] = x[i];
+}
+
 /* Reflected and refracted alike, for half spaces with the default masking. Outputs may be inputs: they are
  * written last. */
 ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real *const wi[3],
@@ -329,27 +412,30 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
     asp_real *px = wo[0], *py = wo[1], *pz = wo[2], *r = weight[0], *g = weight[1], *b = weight[2];
     asp_real vx[ASP_BLOCK], vy[ASP_BLOCK], vz[ASP_BLOCK], mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK];
     asp_real ox[ASP_BLOCK], oy[ASP_BLOCK], oz[ASP_BLOCK], bx[ASP_BLOCK], by[ASP_BLOCK], bz[ASP_BLOCK];
-    asp_real si[ASP_BLOCK], so[ASP_BLOCK], D[ASP_BLOCK], c[ASP_BLOCK], F[ASP_BLOCK];
+    asp_real si[ASP_BLOCK], so[ASP_BLOCK], D[ASP_BLOCK], c[ASP_BLOCK], F[ASP_BLOCK], wm[ASP_BLOCK];
+    asp_real G2[ASP_BLOCK];
+    int far[ASP_BLOCK];
     asp_real index = mat->c.r, inverse = R(1.0) / mat->c.r;
-    asp_real denser = mat->transport == ASP_IMPORTANCE ? R(0.0) : R(1.0);
+    int denser = scales(mat);
     size_t i;
     if (mat->a.r > R(0.0) || index == R(1.0) || mat->mask != 0 || !n)
         return 0;
     for (i = 0; i < n; i++) {
-        asp_v3 v = turned(aspi_vector(wx[i], wy[i], wz[i]), wz[i] < R(0.0) ? R(-1.0) : R(1.0), 0);
+        asp_v3 v = aspi_turned(aspi_vector(wx[i], wy[i], wz[i]), wz[i] < R(0.0) ? R(-1.0) : R(1.0), 0);
         vx[i] = v.x;
         vy[i] = v.y;
         vz[i] = v.z;
     }
-    OPS(shape).visible_n(shape, n, vx, vy, vz, u[0], u[1], mx, my, mz);
-    OPS(shape).sigma_n(shape, n, R(1.0), vx, vy, vz, si);
-    OPS(shape).density_n(shape, n, mx, my, mz, D);
+    ASPI_OPS(shape).visible_n(shape, n, vx, vy, vz, u[0], u[1], mx, my, mz);
+    ASPI_OPS(shape).sigma_n(shape, n, R(1.0), vx, vy, vz, si);
+    ASPI_OPS(shape).density_n(shape, n, mx, my, mz, D);
     for (i = 0; i < n; i++) {
-        asp_real eta = index_of(wz[i], index, inverse, 0), sign;
-        case_of k = bend(aspi_vector(vx[i], vy[i], vz[i]), aspi_vector(mx[i], my[i], mz[i]), eta, u3[i], 0);
+        asp_real eta = index_of(wz[i], index, inverse, 0), over = index_of(wz[i], inverse, index, 0), sign;
+        case_of k = bend(aspi_vector(vx[i], vy[i], vz[i]), aspi_vector(mx[i], my[i], mz[i]), eta, over, u3[i], 0);
         sign = k.refracts ? R(-1.0) : R(1.0);
         c[i] = k.c;
         F[i] = k.F;
+        wm[i] = k.wm;
         ox[i] = k.wo.x;
         oy[i] = k.wo.y;
         oz[i] = k.wo.z;
@@ -357,11 +443,25 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
         by[i] = sign * k.wo.y;
         bz[i] = sign * k.wo.z;
     }
-    OPS(shape).sigma_n(shape, n, R(1.0), bx, by, bz, so);
+    ASPI_OPS(shape).sigma_n(shape, n, R(1.0), bx, by, bz, so);
+    for (i = 0; i < n; i++) {
+        case_of k;
+        asp_v2 a;
+        k.wi = aspi_vector(vx[i], vy[i], vz[i]);
+        k.wo = aspi_vector(ox[i], oy[i], oz[i]);
+        k.sigma_i = si[i];
+        a = areas(shape, &k, so[i], 0);
+        bx[i] = a.x;
+        by[i] = a.y;
+        far[i] = (u3[i] >= F[i]) & !is_near(a.x, a.y);
+        G2[i] = beta_near(a.x, a.y);
+    }
+    beta_n(n, bx, by, far, G2);
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
-        asp_real nothing = (wx[i] + wy[i] + wz[i]) * R(0.0), sign = wz[i] < R(0.0) ? R(-1.0) : R(1.0), p, w;
+        asp_real nothing = (wx[i] + wy[i] + wz[i]) * R(0.0), sign = wz[i] < R(0.0) ? R(-1.0) : R(1.0), p, w, stay;
         case_of k;
+        asp_v3 out;
         int stop, lost;
         k.wi = aspi_vector(vx[i], vy[i], vz[i]);
         k.m = aspi_vector(mx[i], my[i], mz[i]);
@@ -369,18 +469,21 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
         k.eta = index_of(wz[i], index, inverse, 0);
         k.c = c[i];
         k.F = F[i];
-        k.wm = aspi_dot(k.wo, k.m);
+        k.wm = wm[i];
         k.refracts = u3[i] >= F[i];
         k.sigma_i = si[i];
+        out = leaves(k.wo);
         p = facet_density(&k, D[i], 0);
-        w = sample_weight(shape, &k, so[i], denser > R(0.0) ? R(1.0) / (k.eta * k.eta) : R(1.0), 0, 0);
+        w = crossing_weight(&k, G2[i], aspi_crossing_scale(k.eta, denser));
+        stay = staying_weight(shape, &k, so[i], 0);
+        w = k.refracts ? w : stay;
         stop = (k.wi.z <= R(0.0)) | (nothing != R(0.0));
         lost = stop | (bz[i] <= R(0.0));
         p = aspi_select(lost, nothing, p);
         w = aspi_select(lost | (p <= R(0.0)), nothing, w);
-        px[i] = aspi_select(stop, -wx[i], sign * k.wo.x);
-        py[i] = aspi_select(stop, -wy[i], sign * k.wo.y);
-        pz[i] = aspi_select(stop, -wz[i], sign * k.wo.z);
+        px[i] = aspi_select(stop, -wx[i], sign * out.x);
+        py[i] = aspi_select(stop, -wy[i], sign * out.y);
+        pz[i] = aspi_select(stop, -wz[i], sign * out.z);
         pdf[i] = p;
         r[i] = w;
         g[i] = w;
@@ -388,8 +491,5 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
     }
     return 1;
 }
-#undef OPS
-#undef OPS_64
-#undef OPS_32
 #undef BETA_STEPS
 #endif

@@ -11,6 +11,8 @@
 #define aspi_bent_half ASP_NAME(aspi_bent_half)
 #define aspi_bent_density ASP_NAME(aspi_bent_density)
 #define aspi_around ASP_NAME(aspi_around)
+#define aspi_turned ASP_NAME(aspi_turned)
+#define aspi_crossing_scale ASP_NAME(aspi_crossing_scale)
 #endif
 
 #if (ASP_PRECISION == 64 && !defined(ASPI_REFRACTION_64)) || \
@@ -20,6 +22,19 @@
 #else
 #define ASPI_REFRACTION_32
 #endif
+
+/* As seen from the side of `sign`: by a point reflection, or for a sheet by a mirror. */
+ASP_FN asp_v3 aspi_turned(asp_v3 w, asp_real sign, int thin)
+{
+    asp_real across = thin ? R(1.0) : sign;
+    w.x = across * w.x;
+    w.y = across * w.y;
+    w.z = sign * w.z;
+    return w;
+}
+
+/* What crosses into the index eta is scaled so, where `scales` says that it is: radiance, but for sheets. */
+ASP_FN asp_real aspi_crossing_scale(asp_real eta, int scales) { return scales ? R(1.0) / (eta * eta) : R(1.0); }
 
 /* Where light that comes from v goes behind the facet m, v.m >= 0: a unit vector away from the surface
  * (Walter et al. 2007, eq. 40). Meaningless under total reflection, where F = 1. */

@@ -5,6 +5,7 @@
  * middle. Read once per precision. */
 
 #include "asperity/facet.h"
+#include "bsdf/ops.h"
 
 #ifndef ASPI_BLOCKS_ONCE
 #define ASPI_BLOCKS_ONCE
@@ -18,10 +19,6 @@
 /* A batch block by block; a block's inputs are read before its outputs are written. */
 #define ASPI_FOR_BLOCKS(i, size, n) \
     for (i = 0; i < (n) && (size = (n) - i < ASP_BLOCK ? (n) - i : ASP_BLOCK, 1); i += ASP_BLOCK)
-/* The record's formulas in this precision. */
-#define ASPI_OPS_64(k) ((k)->model->f64)
-#define ASPI_OPS_32(k) ((k)->model->f32)
-#define ASPI_OPS ASP_NAME(ASPI_OPS)
 #endif
 
 #undef asp_v3s

@@ -23,9 +23,7 @@
 #define value_of ASP_NAME(value_of)
 #define share_of ASP_NAME(share_of)
 #define eval_scaled ASP_NAME(eval_scaled)
-#define density_of ASP_NAME(density_of)
 #define lit_part ASP_NAME(lit_part)
-#define sigma_of ASP_NAME(sigma_of)
 #define sample_pure ASP_NAME(sample_pure)
 #define sample_mixed ASP_NAME(sample_mixed)
 #define sample_own ASP_NAME(sample_own)
@@ -56,17 +54,6 @@ ASP_FN void value_of(const asp_mat *mat, asp_real c2, asp_v2 x, asp_real y, asp_
 
 /* ---- single calls */
 
-/* D(m) and sigma(w) without leaving this file. */
-ASP_FN asp_real density_of(const asp_shape *k, asp_v3 m)
-{
-    return ASPI_OPS(k).density(k, m.x, m.y, m.z);
-}
-
-ASP_FN asp_real sigma_of(const asp_shape *k, asp_v3 w)
-{
-    return ASPI_OPS(k).sigma(k, w.x, w.y, w.z);
-}
-
 /* aspi_reflected; a constant mask spares the default the others' arithmetic. */
 ASP_FN asp_v2 lit_part(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real mz2, asp_real c2,
                        asp_real sigma_i, asp_real sigma_o, asp_real by)
@@ -90,7 +77,7 @@ ASP_CLONES_SINGLE static asp_c3 eval_scaled(const asp_mat *mat, asp_v3 wi, asp_v
 {
     const asp_shape *k = &mat->ndf;
     asp_v3 m = aspi_half_vector(wi, wo);
-    asp_real D = density_of(k, m), sigma_i = sigma_of(k, wi), sigma_o = sigma_of(k, wo);
+    asp_real D = aspi_density_of(k, m), sigma_i = aspi_sigma_of(k, wi), sigma_o = aspi_sigma_of(k, wo);
     asp_real c = aspi_dot(wi, m), c2 = c * aspi_abs(c), mz2 = m.z * aspi_abs(m.z);
     asp_real y = aspi_min(wi.z, wo.z) <= R(0.0) ? R(0.0) : by;
     asp_c3 out;
@@ -123,7 +110,7 @@ asp_real ASPI_CALL(asp_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
     if (mat->model->ASPI_CALL(pdf))
         return mat->model->ASPI_CALL(pdf)(mat, &wi, &wo);
     m = aspi_half_vector(wi, wo);
-    lobe = aspi_lobe_density(wi.z, density_of(&mat->ndf, m), sigma_of(&mat->ndf, wi));
+    lobe = aspi_lobe_density(wi.z, aspi_density_of(&mat->ndf, m), aspi_sigma_of(&mat->ndf, wi));
     return mat->model->mixed ? aspi_mixed_density(wi.z, wo.z, lobe, share_of(mat, wi.z)) : lobe;
 }
 
@@ -171,7 +158,7 @@ static asp_sampled sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_
 {
     asp_sampled out;
     const asp_shape *k = &mat->ndf;
-    asp_real sigma_i = sigma_of(k, wi), share = share_of(mat, wi.z), c, c2, mz2, D, y, scale;
+    asp_real sigma_i = aspi_sigma_of(k, wi), share = share_of(mat, wi.z), c, c2, mz2, D, y, scale;
     asp_v3 m;
     int facet = u1 < share;
     u1 = facet ? u1 / share : (u1 - share) / (R(1.0) - share);
@@ -181,11 +168,11 @@ static asp_sampled sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_
     c = aspi_dot(wi, m);
     c2 = c * aspi_abs(c);
     mz2 = m.z * aspi_abs(m.z);
-    D = density_of(k, m);
+    D = aspi_density_of(k, m);
     out.pdf = aspi_mixed_density(wi.z, out.wo.z, aspi_lobe_density(wi.z, D, sigma_i), share);
     y = aspi_min(wi.z, out.wo.z) <= R(0.0) || out.pdf <= R(0.0) ? R(0.0) : out.wo.z / out.pdf;
     scale = out.pdf <= R(0.0) ? R(0.0) : R(0.25) * D / out.pdf;
-    value_of(mat, c2, lit_part(mat, wi, out.wo, mz2, c2, sigma_i, sigma_of(k, out.wo),
+    value_of(mat, c2, lit_part(mat, wi, out.wo, mz2, c2, sigma_i, aspi_sigma_of(k, out.wo),
                                aspi_above(out.wo.z) * scale), y, &out.weight);
     return out;
 }

@@ -34,7 +34,6 @@
 #define leave_by ASP_NAME(leave_by)
 #define other_side ASP_NAME(other_side)
 #define visible_normal ASP_NAME(visible_normal)
-#define met_density ASP_NAME(met_density)
 #define draw_eval ASP_NAME(walk_draw_eval)
 #define draw_sample ASP_NAME(walk_draw_sample)
 #define uniform ASP_NAME(uniform)
@@ -115,13 +114,8 @@ ASP_FN asp_real walls_seen(const asp_shape *k, asp_v3 v)
 /* Facets and walls seen from v: at least v.z, which rounding must not undercut. */
 ASP_FN asp_real area(const asp_shape *k, asp_v3 v)
 {
-    asp_real a = ASPI_OPS(k).sigma(k, v.x, v.y, v.z) + walls_seen(k, v);
+    asp_real a = aspi_sigma_of(k, v) + walls_seen(k, v);
     return aspi_max(a, v.z);
-}
-
-ASP_FN asp_real met_density(const asp_shape *k, asp_v3 m)
-{
-    return ASPI_OPS(k).density(k, m.x, m.y, m.z);
 }
 
 /* over/under as an exponent. */
@@ -252,7 +246,7 @@ ASP_FN void scatter(walker *r, asp_v3 m)
 ASP_FN asp_real facet_phase(const asp_shape *k, asp_v3 v, asp_v3 m, asp_real seen)
 {
     asp_real c = aspi_dot(v, m);
-    return c <= R(0.0) ? R(0.0) : c * met_density(k, m) / seen;
+    return c <= R(0.0) ? R(0.0) : c * aspi_density_of(k, m) / seen;
 }
 
 /* Density of the direction w (of travel, on the same side) after one reflection by facets that face v,
@@ -262,7 +256,7 @@ ASP_FN asp_real by_reflection(const asp_shape *k, asp_v3 v, asp_v3 w, int inside
 {
     asp_v3 m = aspi_half_vector(v, facing(w, !inside));
     *c = aspi_dot(v, m);
-    return *c <= R(0.0) || m.z <= R(0.0) ? R(0.0) : R(0.25) * met_density(k, m) / seen;
+    return *c <= R(0.0) || m.z <= R(0.0) ? R(0.0) : R(0.25) * aspi_density_of(k, m) / seen;
 }
 
 /* The same after refraction to the other side; eta as seen from v. From inside everything is turned
