@@ -61,13 +61,13 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define beta_near ASP_NDF_NAME(_beta_near)
 #define is_near ASP_NDF_NAME(_is_near)
 #define sheet ASP_NDF_NAME(_sheet)
-#define areas ASP_NDF_NAME(_areas)
+#define area_i ASP_NDF_NAME(_area_i)
+#define area_o ASP_NDF_NAME(_area_o)
 #define leaves ASP_NDF_NAME(_leaves)
 #define joint_reflected ASP_NDF_NAME(_joint_reflected)
 #define facet_density ASP_NDF_NAME(_facet_density)
 #define index_of ASP_NDF_NAME(_index_of)
 #define bend ASP_NDF_NAME(_bend)
-#define sample_weight ASP_NDF_NAME(_sample_weight)
 #define scales ASP_NDF_NAME(_scales)
 #define sample_as ASP_NDF_NAME(_sample_as)
 #define crossing_weight ASP_NDF_NAME(_crossing_weight)
@@ -189,29 +189,30 @@ ASP_FN asp_real beta_near(asp_real a, asp_real b)
     return (os * s + es) / ((ox * x + ex) * (oy * y + ey));
 }
 
-/* Masked areas over cosines, 1 + Lambda of both directions of light that crosses: the one sees from above, the
- * other from below. */
-ASP_FN asp_v2 areas(const asp_shape *shape, const case_of *k, asp_real sigma_o, int mask)
+/* Masked area over cosine, 1 + Lambda, of wi, and of light that crosses, which sees from below. */
+ASP_FN asp_real area_i(const asp_shape *shape, const case_of *k, int mask)
 {
-    asp_v2 out;
-    out.x = aspi_masked(shape, k->wi, k->sigma_i, mask) / k->wi.z;
-    out.y = aspi_masked(shape, aspi_turned(k->wo, R(-1.0), 0), sigma_o, mask) / aspi_abs(k->wo.z);
-    return out;
+    return aspi_masked(shape, k->wi, k->sigma_i, mask) / k->wi.z;
 }
 
-/* G2 of light that crosses. Heitz 2014, sec. 5.4 (after Dupuy): B(1 + Lambda_i, 1 + Lambda_o). V-cavities: what both sides leave of a groove, G1 + G1 - 1. */
-ASP_FN asp_real refracted_masking(const asp_shape *shape, const case_of *k, asp_real sigma_o, int mask)
+ASP_FN asp_real area_o(const asp_shape *shape, asp_v3 wo, asp_real sigma_o, int mask)
 {
-    asp_real ci = k->wi.z, co = aspi_abs(k->wo.z);
-    asp_v2 a = areas(shape, k, sigma_o, mask);
+    return aspi_masked(shape, aspi_turned(wo, R(-1.0), 0), sigma_o, mask) / aspi_abs(wo.z);
+}
+
+/* G2 of light that crosses, from area_i and sigma_o. Heitz 2014, sec. 5.4 (after Dupuy): B(1 + Lambda_i,
+ * 1 + Lambda_o). V-cavities: what both sides leave of a groove, G1 + G1 - 1. */
+ASP_FN asp_real refracted_masking(const asp_shape *shape, const case_of *k, asp_real a, asp_real sigma_o, int mask)
+{
+    asp_real ci = k->wi.z, co = aspi_abs(k->wo.z), b = area_o(shape, k->wo, sigma_o, mask);
     if ((mask & 15) == ASP_MASK_UNCORRELATED)
-        return R(1.0) / (a.x * a.y);
+        return R(1.0) / (a * b);
     if ((mask & 15) == ASP_MASK_V_CAVITY) {
         asp_real open_i = aspi_min(R(1.0), R(2.0) * k->m.z * ci / k->c);
         asp_real open_o = aspi_min(R(1.0), R(2.0) * k->m.z * co / aspi_max(-k->wm, ASP_SMALLEST));
         return aspi_max(open_i + open_o - R(1.0), R(0.0));
     }
-    return is_near(a.x, a.y) ? beta_near(a.x, a.y) : beta(a.x, a.y);
+    return is_near(a, b) ? beta_near(a, b) : beta(a, b);
 }
 
 /* G2 / (ci co) of a reflection. */
@@ -238,7 +239,7 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
             f = cosine ? f * co : f;
         } else if (k.wm < R(0.0)) {
             asp_real so = aspi_sigma_of(&mat->ndf, aspi_turned(k.wo, R(-1.0), 0));
-            asp_real G2 = refracted_masking(&mat->ndf, &k, so, mat->mask);
+            asp_real G2 = refracted_masking(&mat->ndf, &k, area_i(&mat->ndf, &k, mat->mask), so, mat->mask);
             f = (R(1.0) - k.F) * aspi_finite(k.c * D * aspi_bent_density(k.c, k.wm, k.eta) * G2 / k.wi.z)
               * aspi_crossing_scale(k.eta, scales(mat));
             f = cosine ? f : f / co;
@@ -307,23 +308,13 @@ ASP_FN asp_v3 leaves(asp_v3 w)
     return w;
 }
 
-/* f cos / pdf, where F cancels, of light that crosses and of light that stays; k.wo.z of a sheet is above. */
-ASP_FN asp_real crossing_weight(const case_of *k, asp_real G2, asp_real scale)
-{
-    return G2 * (k->sigma_i / k->wi.z * scale);
-}
+/* f cos / pdf, where F cancels: of light that crosses G2 times this, and of light that stays; k.wo.z of a sheet
+ * is above. */
+ASP_FN asp_real crossing_weight(const case_of *k, asp_real scale) { return k->sigma_i / k->wi.z * scale; }
 
 ASP_FN asp_real staying_weight(const asp_shape *shape, const case_of *k, asp_real sigma_o, int mask)
 {
     return k->sigma_i * aspi_abs(k->wo.z) * joint_reflected(shape, k, sigma_o, mask);
-}
-
-ASP_FN asp_real sample_weight(const asp_shape *shape, const case_of *k, asp_real sigma_o, asp_real scale, int thin,
-                              int mask)
-{
-    if (!k->refracts || thin)
-        return staying_weight(shape, k, sigma_o, mask);
-    return crossing_weight(k, refracted_masking(shape, k, sigma_o, mask), scale);
 }
 
 /* A visible normal, then reflection or refraction by F. */
@@ -334,7 +325,7 @@ ASP_FN void sample_as(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_rea
     asp_real sign = wi->z < R(0.0) ? R(-1.0) : R(1.0), index = mat->c.r, inverse = R(1.0) / mat->c.r;
     asp_real nothing = (wi->x + wi->y + wi->z) * R(0.0), weight;
     asp_seen facet;
-    asp_v3 v = aspi_turned(*wi, sign, thin), wo, seen;
+    asp_v3 v = aspi_turned(*wi, sign, thin), wo;
     case_of k;
     out->pdf = nothing;
     out->weight.r = out->weight.g = out->weight.b = nothing;
@@ -357,8 +348,14 @@ ASP_FN void sample_as(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_rea
     out->pdf = facet_density(&k, facet.density, thin);
     if (out->pdf <= R(0.0))
         return;
-    seen = aspi_turned(k.wo, k.refracts && !thin ? R(-1.0) : R(1.0), 0);
-    weight = sample_weight(shape, &k, aspi_sigma_of(shape, seen), aspi_crossing_scale(k.eta, scales(mat)), thin, mask);
+    if (k.refracts && !thin) {
+        /* first what need not be kept while sigma is called */
+        asp_real a = area_i(shape, &k, mask), by = crossing_weight(&k, aspi_crossing_scale(k.eta, scales(mat)));
+        weight = aspi_sigma_of(shape, aspi_turned(k.wo, R(-1.0), 0));
+        weight = refracted_masking(shape, &k, a, weight, mask) * by;
+    } else {
+        weight = staying_weight(shape, &k, aspi_sigma_of(shape, k.wo), mask);
+    }
     out->weight.r = out->weight.g = out->weight.b = weight;
 }
 
@@ -446,15 +443,15 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
     ASPI_OPS(shape).sigma_n(shape, n, R(1.0), bx, by, bz, so);
     for (i = 0; i < n; i++) {
         case_of k;
-        asp_v2 a;
+        asp_real a, o;
         k.wi = aspi_vector(vx[i], vy[i], vz[i]);
-        k.wo = aspi_vector(ox[i], oy[i], oz[i]);
         k.sigma_i = si[i];
-        a = areas(shape, &k, so[i], 0);
-        bx[i] = a.x;
-        by[i] = a.y;
-        far[i] = (u3[i] >= F[i]) & !is_near(a.x, a.y);
-        G2[i] = beta_near(a.x, a.y);
+        a = area_i(shape, &k, 0);
+        o = area_o(shape, aspi_vector(ox[i], oy[i], oz[i]), so[i], 0);
+        bx[i] = a;
+        by[i] = o;
+        far[i] = (u3[i] >= F[i]) & !is_near(a, o);
+        G2[i] = beta_near(a, o);
     }
     beta_n(n, bx, by, far, G2);
     ASP_IN_PLACE
@@ -474,7 +471,7 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
         k.sigma_i = si[i];
         out = leaves(k.wo);
         p = facet_density(&k, D[i], 0);
-        w = crossing_weight(&k, G2[i], aspi_crossing_scale(k.eta, denser));
+        w = G2[i] * crossing_weight(&k, aspi_crossing_scale(k.eta, denser));
         stay = staying_weight(shape, &k, so[i], 0);
         w = k.refracts ? w : stay;
         stop = (k.wi.z <= R(0.0)) | (nothing != R(0.0));
