@@ -63,7 +63,7 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define sheet ASP_NDF_NAME(_sheet)
 #define area_i ASP_NDF_NAME(_area_i)
 #define area_o ASP_NDF_NAME(_area_o)
-#define leaves ASP_NDF_NAME(_leaves)
+#define lengthened ASP_NDF_NAME(_lengthened)
 #define joint_reflected ASP_NDF_NAME(_joint_reflected)
 #define facet_density ASP_NDF_NAME(_facet_density)
 #define index_of ASP_NDF_NAME(_index_of)
@@ -298,8 +298,8 @@ ASP_FN case_of bend(asp_v3 v, asp_v3 m, asp_real eta, asp_real inverse, asp_real
     return k;
 }
 
-/* What leaves, of length 1: a step towards 1/|w| from 1, |w| is 1 to rounding. */
-ASP_FN asp_v3 leaves(asp_v3 w)
+/* w of length 1: a step towards 1/|w| from 1, |w| is 1 to rounding. */
+ASP_FN asp_v3 lengthened(asp_v3 w)
 {
     asp_real by = R(1.5) - R(0.5) * aspi_dot(w, w);
     w.x = by * w.x;
@@ -310,7 +310,10 @@ ASP_FN asp_v3 leaves(asp_v3 w)
 
 /* f cos / pdf, where F cancels: of light that crosses G2 times this, and of light that stays; k.wo.z of a sheet
  * is above. */
-ASP_FN asp_real crossing_weight(const case_of *k, asp_real scale) { return k->sigma_i / k->wi.z * scale; }
+ASP_FN asp_real crossing_weight(const case_of *k, asp_real scale)
+{
+    return aspi_finite(k->sigma_i / k->wi.z) * scale;
+}
 
 ASP_FN asp_real staying_weight(const asp_shape *shape, const case_of *k, asp_real sigma_o, int mask)
 {
@@ -339,7 +342,7 @@ ASP_FN void sample_as(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_rea
     wo = k.wo;
     if (k.refracts && thin)
         wo.z = -wo.z;
-    out->wo = aspi_turned(leaves(wo), sign, thin);
+    out->wo = aspi_turned(lengthened(wo), sign, thin);
     if (k.refracts ? wo.z >= R(0.0) : wo.z <= R(0.0))
         return; /* into the surface again: single scattering loses this light */
     k.sigma_i = facet.sigma_i;
@@ -469,7 +472,7 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
         k.wm = wm[i];
         k.refracts = u3[i] >= F[i];
         k.sigma_i = si[i];
-        out = leaves(k.wo);
+        out = lengthened(k.wo);
         p = facet_density(&k, D[i], 0);
         w = G2[i] * crossing_weight(&k, aspi_crossing_scale(k.eta, denser));
         stay = staying_weight(shape, &k, so[i], 0);
