@@ -122,18 +122,13 @@ ASP_FN asp_v2 prepared_turn(prepared_way w, prepared_near at, asp_real u)
 ASP_FN prepared_way prepared_aim(asp_real c, asp_real g, asp_real r, asp_real u)
 {
     asp_real scale = R(1.0) / ((aspi_abs(c) + g) + PREPARED_TINY), x = r * scale, z = x * x;
-    asp_real f = aspi_abs(R(1.0) - R(2.0) * u), A = R(-0.00405995675), half;
+    asp_real f = aspi_abs(R(1.0) - R(2.0) * u), z2 = z * z, A, half;
     int below = c < R(0.0);
     prepared_way w;
     w.a = c * scale;
     w.b = g * scale;
-    A = A * z + R(0.02070679649);
-    A = A * z + R(-0.04985569133);
-    A = A * z + R(0.08074397253);
-    A = A * z + R(-0.1088864553);
-    A = A * z + R(0.1426091101);
-    A = A * z + R(-0.1999892725);
-    A = A * z + R(0.3333332568);
+    A = ((R(0.3333332568) - R(0.1999892725) * z) + (R(0.1426091101) - R(0.1088864553) * z) * z2)
+      + ((R(0.08074397253) - R(0.04985569133) * z) + (R(0.02070679649) - R(0.00405995675) * z) * z2) * (z2 * z2);
     half = x - x * z * A;
     w.end = below ? half + half : R(ASP_PI) - (half + half);
     w.sum = below ? z : R(1.0);
@@ -146,20 +141,14 @@ ASP_FN prepared_way prepared_aim(asp_real c, asp_real g, asp_real r, asp_real u)
  * (1 - cos phi)/phi^2 up to pi by scripts/azimuth.py, in sine to 2e-9 and in cosine to 1.2e-8. */
 ASP_FN prepared_near prepared_step(prepared_way w)
 {
-    asp_real phi = w.phi, x = phi * phi, P = R(-1.352831256e-10), Q = R(-1.72902783e-9);
+    asp_real phi = w.phi, x = phi * phi, x2 = x * x, P, Q;
     asp_real cube, less, sine, cosine, d, d2, s, k;
     prepared_near out;
     asp_v2 step;
-    P = P * x + R(2.470307813e-8);
-    Q = Q * x + R(2.709339591e-7);
-    P = P * x + R(-2.753291871e-6);
-    Q = Q * x + R(-2.477163482e-5);
-    P = P * x + R(0.0001984038106);
-    Q = Q * x + R(0.00138879056);
-    P = P * x + R(-0.008333317803);
-    Q = Q * x + R(-0.04166651787);
-    P = P * x + R(0.1666666569);
-    Q = Q * x + R(0.4999999249);
+    P = (R(0.1666666569) - R(0.008333317803) * x) + (R(0.0001984038106) - R(2.753291871e-6) * x) * x2
+      + (R(2.470307813e-8) - R(1.352831256e-10) * x) * (x2 * x2);
+    Q = (R(0.4999999249) - R(0.04166651787) * x) + (R(0.00138879056) - R(2.477163482e-5) * x) * x2
+      + (R(2.709339591e-7) - R(1.72902783e-9) * x) * (x2 * x2);
     cube = phi * x * P;
     less = x * Q;
     sine = phi - cube;

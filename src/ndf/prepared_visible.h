@@ -272,11 +272,12 @@ ASP_FN void prepared_put(const asp_shape *k, prepared_tails *t, prepared_block *
     }
 }
 
-/* From c, g and root as .q to cos and sin as .a and .y; in steps, which the processor overlaps. */
+/* From c, g and root as .q to cos and sin as .a and .y; in steps, which the processor overlaps. What the block no longer
+ * needs is overwritten: all of it stays close. */
 ASP_FN void prepared_azimuths(size_t n, prepared_block *block, const asp_real *ASP_RESTRICT u2)
 {
-    asp_real a[PREPARED_DRAWN], b[PREPARED_DRAWN], sum[PREPARED_DRAWN], target[PREPARED_DRAWN];
-    asp_real phi[PREPARED_DRAWN], end[PREPARED_DRAWN];
+    asp_real *a = block->a, *b = block->y, *sum = block->odds, *phi = block->q;
+    asp_real target[PREPARED_DRAWN], end[PREPARED_DRAWN];
     asp_real cosine[PREPARED_DRAWN], sine[PREPARED_DRAWN], slope[PREPARED_DRAWN];
     size_t i;
     for (i = 0; i < n; i++) {
