@@ -178,7 +178,7 @@ asp_status asp_ndf_parse(const asp_model *const *models, const char *spec, asp_n
  * each by 1e-6 at least, and densities in [1e-100, 1e100], neighbours within a factor of 5. Between them log P22 is a cubic of log(r^2 + s^2),
  * s the first slope above 0, monotone where the samples are; below the first it is flat; beyond the last P22
  * falls as (r^2 + s^2)^-tail, tail in [2, 1000], or 0: as between the last two, but at least as 2. Masking
- * and samplers are prepared numerically, sigma to 2.5e-3 where samples jump by the most (far below the horizon 1e-2), to 1e-4 and
+ * and samplers are prepared numerically, sigma to 2.5e-3 where samples fall in steps (far below the horizon 1e-2; 1.5e-2 where they zigzag), to 1e-4 and
  * better where they are smooth. A plain value: the arrays are not kept. In a spec:
  *     tabulated:slopes=0/0.1/0.3,density=5/4/1        (and tail=3, and the slope map's keys; alpha is 1)
  * ASP_EINVAL: of a sample, err->position is its index. */

@@ -127,6 +127,42 @@ static void masking(samples *s, const char *name, double bound_above, double bou
     report(text, single, 2e-6);
 }
 
+/* Chi-square that 10^7 visible normals seen edge-on give beyond that of their number, in 99 rings: the share of
+ * what is seen that lies beyond the radius drawn against the uniform number it was drawn from. */
+static void edge_on(samples *s, const char *name, double bound)
+{
+    asp_ndf k = make(s);
+    asp_vec3 view = { 1, 0, 0 };
+    double all = 0, chi = 0, last_share = 1, last_u = 1;
+    char text[100];
+    for (int i = 0; i <= 100; i++) {
+        double e = 0.02 * i, u = exp(-e * e * e * e * e), share = 0, low, r = 0;
+        if (i > 0) {
+            asp_vec3 m = asp_sample_visible(&k, view, u, 0.5);
+            r = hypot(m.x, m.y) / m.z;
+        }
+        if (u < 1e-6)
+            break;
+        low = r;
+        for (size_t j = 0; j < s->s.count; j++)
+            if (s->slope[j] > low) {
+                share += over_stretch(&k, low, s->slope[j], 0, 2, -1);
+                low = s->slope[j];
+            }
+        for (int j = 0; j < 24; j++)
+            share += over_stretch(&k, low * pow(4, j), low * pow(4, j + 1), 1, 2, -1);
+        if (i == 0)
+            all = share;
+        share /= all;
+        if (i > 0)
+            chi += 1e7 * pow(last_share - share - (last_u - u), 2) / fmax(last_share - share, last_u - u);
+        last_share = share;
+        last_u = u;
+    }
+    snprintf(text, sizeof text, "%s: visible normals edge-on, chi-square of 10^7", name);
+    report(text, chi, bound);
+}
+
 /* ------------------------------------------------------------------ shapes */
 
 static void monotone(void)
@@ -143,6 +179,12 @@ static void monotone(void)
     tail = log(asp_P22(&k, 100, 0) / asp_P22(&k, 1000, 0)) / log((1e6 + 0.01) / (1e4 + 0.01));
     report("the tail is that asked for", fabs(tail - 3), 1e-9);
     masking(&s, "steps", 2.5e-3, 1e-2);
+}
+
+static void few(void)
+{
+    samples s = { { 0, 0.1, 0.3 }, { 5, 4, 1 }, { 3, NULL, NULL, 0 } };
+    edge_on(&s, "three samples", 15);
 }
 
 static void powers(void)
@@ -229,6 +271,10 @@ int main(void)
     masking(&s, "Beckmann's", 1e-4, 1e-2);
     take(&s, "student_t:alpha=0.1,gamma=3", 2, 0);
     masking(&s, "Student's", 2e-6, 1e-4);
+    edge_on(&s, "Student's", 15);
+    take(&s, "ggx:alpha=0.01", 0.2, 2.5);
+    edge_on(&s, "GGX's, far apart", 15);
+    few();
     monotone();
     powers();
     laws("tabulated:slopes=0/0.1/0.3,density=5/4/1");

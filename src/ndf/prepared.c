@@ -155,11 +155,15 @@ void aspi_prepared_rings(const prepared_source *s, prepared_panels *out)
 }
 
 typedef char prepared_tables_fit[PREPARED_END <= ASP_TABLE_NUMBERS ? 1 : -1];
+typedef char prepared_views_fit[PREPARED_VIEW_CELLS(0) <= PREPARED_VIEWS_MOST
+                                && PREPARED_VIEW_CELLS(1) <= PREPARED_VIEWS_MOST ? 1 : -1];
+typedef char prepared_cells_fit[PREPARED_SHARE_CELLS(0) <= PREPARED_CELLS_MOST
+                                && PREPARED_SHARE_CELLS(1) <= PREPARED_CELLS_MOST ? 1 : -1];
 
 asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
 {
     prepared_source s;
-    double mu[PREPARED_VIEW_CELLS + 1], t0;
+    double mu[PREPARED_VIEWS_MOST + 1], t0;
     s.k = out;
     s.f = f;
     s.at = s.log_mass = 0;

@@ -72,15 +72,17 @@ asp_status aspi_prepared_make(asp_ndf *out, aspi_log_density *f, asp_error *err)
 #define PREPARED_DEEP_LAST (1.0 / (1 + 24576.0))      /* y where the last piece of DEEP begins */
 #define PREPARED_WITHIN 8.0
 #define PREPARED_BEYOND 14.0
-#define PREPARED_SHARE_STEP 0.68        /* a cell of z, */
-#define PREPARED_SHARE_CELLS 26
-#define PREPARED_SHARE_ZERO 10          /* of which the tenth ends at t = 0 */
+/* TAIL of bent densities has half as many rows, with twice as many cells: their corners lie across the rows. */
+#define PREPARED_SHARE_STEP(bent) ((bent) ? 0.34 : 0.68)      /* a cell of z, */
+#define PREPARED_SHARE_CELLS(bent) ((bent) ? 52 : 26)
+#define PREPARED_SHARE_ZERO(bent) ((bent) ? 20 : 10)          /* where t = 0 */
 #define PREPARED_SHARE_FIRST (-12.908548742233984)   /* t at both ends */
 #define PREPARED_SHARE_LAST 17.288385820467795
 #define PREPARED_SHARE_LEAST 37.0       /* the least share that is told from none: 2^-53 */
-#define PREPARED_SHARE_ROW (PREPARED_SHARE_CELLS + 3)
+#define PREPARED_SHARE_ROW(bent) (PREPARED_SHARE_CELLS(bent) + 3)
 #define PREPARED_VIEWS_CELLS 64
-#define PREPARED_VIEW_CELLS 32          /* rows of TAIL, less 1 */
+#define PREPARED_VIEW_CELLS(bent) ((bent) ? 15 : 32)          /* rows of TAIL, less 1 */
+#define PREPARED_TAIL_NUMBERS(bent) (PREPARED_SHARE_ROW(bent) * (PREPARED_VIEW_CELLS(bent) + 3))
 /* Visible normals drawn from above the mean plane end at a radius beyond which less than this share lies: there
  * the two parts of the sampler meet, which without an end would only do so at infinity. */
 #define PREPARED_CUT 0x1p-26
@@ -103,7 +105,8 @@ enum {
     PREPARED_NORMAL = PREPARED_DEEP + PREPARED_PIECES,
     PREPARED_VIEWS = PREPARED_NORMAL + PREPARED_PIECES,
     PREPARED_TAIL = PREPARED_VIEWS + PREPARED_VIEWS_CELLS + 3,
-    PREPARED_END = PREPARED_TAIL + PREPARED_SHARE_ROW * (PREPARED_VIEW_CELLS + 3)
+    PREPARED_END = PREPARED_TAIL + (PREPARED_TAIL_NUMBERS(0) > PREPARED_TAIL_NUMBERS(1) ? PREPARED_TAIL_NUMBERS(0)
+                                                                                        : PREPARED_TAIL_NUMBERS(1))
 };
 
 #endif

@@ -14,6 +14,13 @@
 #define PREPARED_TINY (ASP_PRECISION == 64 ? R(1e-200) : R(1e-24))
 #endif
 
+#undef PREPARED_BENDS
+#ifdef PREPARED_BENT
+#define PREPARED_BENDS 1
+#else
+#define PREPARED_BENDS 0
+#endif
+
 /* x in cells, x < 2^31: the cell out of n, of which the last goes on beyond its end; a NaN counts as 0. By bits: the
  * compilers would branch. */
 ASP_FN int prepared_cell(asp_real x, int n)

@@ -63,10 +63,8 @@ void aspi_prepared_rings(const prepared_source *s, prepared_panels *out);
 /* The trapezoidal rule in log rho converges fast where the density is smooth; bent ones take a finer step. */
 #define PREPARED_STEP 0.2
 #define PREPARED_FINER 4
-ASP_FN int aspi_prepared_finer(const prepared_source *s)
-{
-    return s->k->table[PREPARED_IS_BENT] > 0 ? PREPARED_FINER : 1;
-}
+ASP_FN int aspi_prepared_bent(const prepared_source *s) { return s->k->table[PREPARED_IS_BENT] > 0; }
+ASP_FN int aspi_prepared_finer(const prepared_source *s) { return aspi_prepared_bent(s) ? PREPARED_FINER : 1; }
 
 /* 1 - atan(x)/x for z = x^2, |x| < 0.1. */
 ASP_FN double aspi_prepared_near(double z)
@@ -100,8 +98,10 @@ double aspi_prepared_rho(double t);
 
 /* NORMAL. */
 void aspi_prepared_normal_table(const prepared_source *s, double *table);
+#define PREPARED_VIEWS_MOST 32   /* cells between rows, */
+#define PREPARED_CELLS_MOST 52   /* and within them */
 /* VIEWS; mu of every row of TAIL. */
-void aspi_prepared_views(const prepared_source *s, double t0, double *table, double mu[PREPARED_VIEW_CELLS + 1]);
+void aspi_prepared_views(const prepared_source *s, double t0, double *table, double mu[PREPARED_VIEWS_MOST + 1]);
 /* TAIL. */
 void aspi_prepared_tail_table(const prepared_source *s, double t0, const double *mu, double *table);
 

@@ -102,9 +102,9 @@ static double prepared_views_at(const double *c, double y, double *slope)
          + c[3] * (t * t * t);
 }
 
-void aspi_prepared_views(const prepared_source *s, double t0, double *table, double mu[PREPARED_VIEW_CELLS + 1])
+void aspi_prepared_views(const prepared_source *s, double t0, double *table, double mu[PREPARED_VIEWS_MOST + 1])
 {
-    const int n = PREPARED_VIEWS_CELLS;
+    const int n = PREPARED_VIEWS_CELLS, rows = PREPARED_VIEW_CELLS(aspi_prepared_bent(s));
     double *c = table + PREPARED_VIEWS, density[ROWS_NODES + 1], sum[ROWS_NODES + 1], low, high, y = 0;
     /* slopes up to where the core ends, if that is within T0 */
     double core = aspi_exp_64(-0.5 * aspi_max_64(aspi_prepared_log(s, 0) + aspi_log_64(ASP_PI), -1400));
@@ -129,9 +129,9 @@ void aspi_prepared_views(const prepared_source *s, double t0, double *table, dou
     low = prepared_views_at(c, 0, &slope);
     high = prepared_views_at(c, n, &slope);
     for (i = 0; i <= n + 2; i++)
-        c[i] = (6 * c[i] - low) * PREPARED_VIEW_CELLS / (6 * (high - low));
+        c[i] = (6 * c[i] - low) * rows / (6 * (high - low));
     mu[0] = 0;
-    for (i = 1; i <= PREPARED_VIEW_CELLS; i++) {
+    for (i = 1; i <= rows; i++) {
         double below = y, above = n, at;
         int turn;
         for (turn = 0; turn < 60; turn++) {      /* Newton's, kept within what is known */

@@ -63,21 +63,21 @@ ASP_FN asp_real prepared_views_at(const asp_shape *k, int i, asp_real t)
     FOUR_READ(c, k->table + PREPARED_VIEWS + i);
     FOUR_TIMES(c, c, w);
     row = FOUR_SUM(c);
-    return aspi_min(aspi_max(row, R(0.0)), R(PREPARED_VIEW_CELLS));
+    return aspi_min(aspi_max(row, R(0.0)), R(PREPARED_VIEW_CELLS(PREPARED_BENDS)));
 }
 
 /* TAIL there. */
 ASP_FN asp_real prepared_tail_at(const asp_shape *k, int view, asp_real in_view, int share, asp_real in_share)
 {
     asp_real row = prepared_views_at(k, view, in_view);
-    int i = prepared_cell(row, PREPARED_VIEW_CELLS), j;
+    int i = prepared_cell(row, PREPARED_VIEW_CELLS(PREPARED_BENDS)), j;
     asp_real in_row = row - (asp_real)i;
-    const asp_real *from = k->table + PREPARED_TAIL + (i * PREPARED_SHARE_ROW + share);
+    const asp_real *from = k->table + PREPARED_TAIL + (i * PREPARED_SHARE_ROW(PREPARED_BENDS) + share);
     prepared_four r[4], w, z, v;
     FOUR_WEIGHTS(w, in_row);
     FOUR_WEIGHTS(z, in_share);
     for (j = 0; j < 4; j++)
-        FOUR_READ(r[j], from + j * PREPARED_SHARE_ROW);
+        FOUR_READ(r[j], from + j * PREPARED_SHARE_ROW(PREPARED_BENDS));
     FOUR_ROWS(v, r, w);
     FOUR_TIMES(v, v, z);
     return FOUR_SUM(v);
@@ -93,9 +93,9 @@ ASP_FN prepared_far_view prepared_tail_place(const asp_shape *k, asp_real h, asp
     asp_real beyond = aspi_min(t, R(PREPARED_SHARE_LEAST)) - in;
     prepared_far_view out;
     y = y * k->table[PREPARED_PER_VIEW];
-    z = in / aspi_sqrt(R(1.0) + z * z) * R(1.0 / PREPARED_SHARE_STEP) + R(PREPARED_SHARE_ZERO);
+    z = in / aspi_sqrt(R(1.0) + z * z) * R(1.0 / PREPARED_SHARE_STEP(PREPARED_BENDS)) + R(PREPARED_SHARE_ZERO(PREPARED_BENDS));
     out.view = prepared_cell(y, PREPARED_VIEWS_CELLS);
-    out.share = prepared_cell(z, PREPARED_SHARE_CELLS);
+    out.share = prepared_cell(z, PREPARED_SHARE_CELLS(PREPARED_BENDS));
     out.in_view = y - (asp_real)out.view;
     out.in_share = z - (asp_real)out.share;
     out.more = aspi_min(beyond, R(0.0)) * k->table[PREPARED_TAIL_START]

@@ -6,9 +6,9 @@
 #include "ndf/pieces.h"
 
 /* t at x in cells. */
-static double prepared_share_of(double x)
+static double prepared_share_of(int bent, int x)
 {
-    double z = PREPARED_SHARE_STEP * (x - PREPARED_SHARE_ZERO), s = z / (z < 0 ? PREPARED_WITHIN : PREPARED_BEYOND);
+    double z = PREPARED_SHARE_STEP(bent) * (x - PREPARED_SHARE_ZERO(bent)), s = z / (z < 0 ? PREPARED_WITHIN : PREPARED_BEYOND);
     return z / sqrt(1 - s * s);
 }
 
@@ -17,22 +17,12 @@ double aspi_prepared_rho(double t)
     return t < 0 ? aspi_log1p_64(aspi_exp_64(t)) : t + aspi_log1p_64(aspi_exp_64(-t));
 }
 
-/* log of the radius at n + 1 values of t from the first to the last, from panels. */
-static void prepared_radii(const prepared_panels *p, prepared_integrand *g, const void *context, int n, double *out)
+/* d/dt at both ends of a row. */
+static void prepared_ends(const double *y, int bent, double *first, double *last)
 {
-    double rho[PREPARED_SHARES];
-    int i;
-    for (i = 0; i <= n; i++)
-        rho[i] = aspi_prepared_rho(prepared_share_of((double)(i * PREPARED_SHARE_CELLS) / n));
-    aspi_prepared_radii(p, g, context, n + 1, rho, out);
-}
-
-/* d/dt at both ends of the n + 1 values. */
-static void prepared_ends(const double *y, int n, double *first, double *last)
-{
-    const double low = PREPARED_SHARE_STEP * PREPARED_SHARE_ZERO / PREPARED_WITHIN;
-    const double high = PREPARED_SHARE_STEP * (PREPARED_SHARE_CELLS - PREPARED_SHARE_ZERO) / PREPARED_BEYOND;
-    double cell = PREPARED_SHARE_STEP * PREPARED_SHARE_CELLS / n, a = 1 - low * low, b = 1 - high * high;
+    const double cell = PREPARED_SHARE_STEP(bent), low = cell * PREPARED_SHARE_ZERO(bent) / PREPARED_WITHIN;
+    const int n = PREPARED_SHARE_CELLS(bent);
+    double high = cell * (n - PREPARED_SHARE_ZERO(bent)) / PREPARED_BEYOND, a = 1 - low * low, b = 1 - high * high;
     *first = aspi_prepared_end_slope(y, 1) / cell * a * sqrt(a);
     *last = -aspi_prepared_end_slope(y + n, -1) / cell * b * sqrt(b);
 }
@@ -89,31 +79,34 @@ void aspi_prepared_normal_table(const prepared_source *s, double *table)
 
 /* ------------------------------------------------------------------ slopes seen from below */
 
-/* A row of TAIL; returns log eta where PREPARED_CUT lies beyond. */
-static double prepared_tail_row(const prepared_source *s, double t0, double mu, double *y)
+/* A row of TAIL from -log of the shares beyond its cells, of which the last is PREPARED_CUT; returns log eta there. */
+static double prepared_tail_row(const prepared_source *s, double t0, double mu, int n, const double *rho, double *y)
 {
     prepared_panels panels;
     prepared_sight sight = aspi_prepared_sight(s, mu);
-    double unit = 0.5 * aspi_log_64(mu * mu + t0 * t0), rho = -aspi_log_64(PREPARED_CUT), cut;
+    double unit = 0.5 * aspi_log_64(mu * mu + t0 * t0), cut;
     int i;
     aspi_prepared_sight_panels(&sight, t0, 0.6 / aspi_prepared_finer(s), 1e-10, &panels);
-    prepared_radii(&panels, aspi_prepared_seen, &sight, PREPARED_SHARE_CELLS, y);
-    for (i = 0; i <= PREPARED_SHARE_CELLS; i++)
+    aspi_prepared_radii(&panels, aspi_prepared_seen, &sight, n, rho, y);
+    for (i = 0; i < n; i++)
         y[i] -= unit;
-    aspi_prepared_radii(&panels, aspi_prepared_seen, &sight, 1, &rho, &cut);
+    aspi_prepared_radii(&panels, aspi_prepared_seen, &sight, 1, rho + n, &cut);
     return cut;
 }
 
 void aspi_prepared_tail_table(const prepared_source *s, double t0, const double *mu, double *table)
 {
-    const int n = PREPARED_SHARE_CELLS, m = PREPARED_VIEW_CELLS, row = PREPARED_SHARE_ROW;
-    double line[PREPARED_SHARE_CELLS + 1], half[(PREPARED_VIEW_CELLS + 1) * PREPARED_SHARE_ROW];
+    const int bent = aspi_prepared_bent(s), n = PREPARED_SHARE_CELLS(bent), m = PREPARED_VIEW_CELLS(bent), row = n + 3;
+    double rho[PREPARED_CELLS_MOST + 2], line[PREPARED_CELLS_MOST + 1], half[PREPARED_END - PREPARED_TAIL];
     int i;
+    for (i = 0; i <= n; i++)
+        rho[i] = aspi_prepared_rho(prepared_share_of(bent, i));
+    rho[n + 1] = -aspi_log_64(PREPARED_CUT);
     for (i = 0; i <= m; i++) {
-        double cut = prepared_tail_row(s, t0, mu[i], line);
+        double cut = prepared_tail_row(s, t0, mu[i], n + 1, rho, line);
         if (i == 0) {
             table[PREPARED_EDGE] = aspi_exp_64(cut);
-            prepared_ends(line, n, table + PREPARED_TAIL_START, table + PREPARED_TAIL_END);
+            prepared_ends(line, bent, table + PREPARED_TAIL_START, table + PREPARED_TAIL_END);
             /* 1/3 edge-on, 1/5 for all others, next to nothing within a ring */
             table[PREPARED_TAIL_START] = aspi_min_64(table[PREPARED_TAIL_START], 0.25);
         }
