@@ -19,7 +19,11 @@
 #define student_both_n ASP_NDF_NAME(_both_n)
 #define student_any_n ASP_NDF_NAME(_any_n)
 #define student_long_n ASP_NDF_NAME(_long_n)
-#define student_below_n ASP_NDF_NAME(_below_n)
+#define student_rest_n ASP_NDF_NAME(_rest_n)
+#define student_margin ASP_NDF_NAME(_margin)
+#define student_margins_n ASP_NDF_NAME(_margins_n)
+#define student_near ASP_NDF_NAME(_near)
+#define student_near_n ASP_NDF_NAME(_near_n)
 #define student_see_n ASP_NDF_NAME(_see_n)
 #define student_aim_n ASP_NDF_NAME(_aim_n)
 #define student_slope_n ASP_NDF_NAME(_slope_n)
@@ -116,18 +120,43 @@ ASP_FN asp_v2 student_long_way(const asp_shape *k, asp_v3 v, asp_real u1)
     return student_slope(k, a.side * a.r);
 }
 
+/* Negative where the table does not lead to the slope. In float64 two steps start from it, which do not reach what is
+ * left of the distribution function close to its ends; in float32 it is the slope. */
+ASP_FN asp_real student_margin(asp_real vz, asp_real u1)
+{
+#if ASP_PRECISION == 64
+    return aspi_min(vz, aspi_min(u1 - ASP_OCTAVES_LEAST, R(1.0 - 0x1p-17) - u1));
+#else
+    (void)u1;
+    return vz;
+#endif
+}
+
+#if ASP_PRECISION == 64
+/* The search from r, which has the sign of -x. */
+ASP_FN asp_real student_near(const asp_shape *k, asp_v3 v, asp_real u1, asp_real r)
+{
+    student_search a = student_start(k, v, u1);
+    a.r = aspi_max(a.side * r, R(1e-12));
+    a.r = student_step(k, a, 0);
+    a.r = student_step(k, a, 0);
+    return a.side * a.r;
+}
+#endif
+
 ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2)
 {
     asp_v2 across = student_across(k, student_quantile(k, u2), u2);
     asp_real s = aspi_sqrt(v.x * v.x + v.y * v.y);
-#if ASP_PRECISION == 32
-    if (k->table[STUDENT_SHORT] > R(0.0) && !(v.z < R(0.0))) {
+    if (k->table[STUDENT_SHORT] > R(0.0) && !(student_margin(v.z, u1) < R(0.0))) {
         student_place p = student_along_place(k, student_view_place(k, v.z, s),
                                               aspi_octaves(k->table + STUDENT_ALONG, u1), u1);
         asp_real r = aspi_patch(k->table + STUDENT_PATCHES, p.at, p.x, p.y);
+#if ASP_PRECISION == 64
+        r = student_near(k, v, u1, r);
+#endif
         return student_turned(student_slope(k, r), across, v, s);
     }
-#endif
     return student_turned(student_long_way(k, v, u1), across, v, s);
 }
 
@@ -143,7 +172,7 @@ ASP_FN asp_v3 ndf_visible(const asp_shape *k, asp_v3 v, asp_real u1, asp_real u2
 #define STUDENT_LOAD(a, f, i) \
     a.c = f[0][i]; a.s = f[1][i]; a.side = f[2][i]; a.shift = f[3][i]; a.t = f[4][i]; a.r = f[5][i];
 
-/* The views of a block and their horizontal lengths; whether one of them looks from below. */
+/* The views of a block; whether one of them looks from below. */
 ASP_FN int student_views_n(const asp_shape *k, size_t n, asp_real sign, IN wx, IN wy, IN wz, OUT vx, OUT vy,
                            OUT vz)
 {
@@ -183,7 +212,7 @@ ASP_FN void student_step_n(const asp_shape *k, size_t n, int logs, BLOCK)
     }
 }
 
-/* The signed r by the search: of all, or only of the views from below. */
+/* The signed r by the search. */
 ASP_FN void student_long_n(size_t n, BLOCK, OUT r)
 {
     size_t i;
@@ -191,7 +220,6 @@ ASP_FN void student_long_n(size_t n, BLOCK, OUT r)
         r[i] = f[2][i] * f[5][i];
 }
 
-#if ASP_PRECISION == 32
 ASP_FN void student_see_n(const asp_shape *k, size_t n, IN vx, IN vy, IN vz, OUT s, OUT y, int *ASP_RESTRICT at)
 {
     size_t i;
@@ -219,21 +247,46 @@ ASP_FN void student_aim_n(const asp_shape *k, size_t n, IN z, IN u1, int *ASP_RE
     }
 }
 
-ASP_FN void student_below_n(size_t n, IN vz, BLOCK, OUT r)
+/* The signed r by the search where the table did not lead to it. */
+ASP_FN void student_rest_n(size_t n, IN vz, IN u1, BLOCK, OUT r)
 {
     size_t i;
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
-        asp_real found = f[2][i] * f[5][i], kept = r[i], z = vz[i];
-        r[i] = z < R(0.0) ? found : kept;
+        asp_real found = f[2][i] * f[5][i], kept = r[i];
+        r[i] = student_margin(vz[i], u1[i]) < R(0.0) ? found : kept;
     }
 }
+
+#if ASP_PRECISION == 32
 #else
 ASP_FN void student_quantile_n(const asp_shape *k, size_t n, IN u2, OUT q)
 {
     size_t i;
     for (i = 0; i < n; i++)
         q[i] = student_quantile(k, u2[i]);
+}
+
+ASP_FN asp_bits student_margins_n(size_t n, IN vz, IN u1)
+{
+    asp_bits any = 0;
+    size_t i;
+    for (i = 0; i < n; i++)
+        any |= aspi_to_bits(student_margin(vz[i], u1[i]));
+    return any >> (8 * sizeof any - 1);
+}
+
+/* The equations, and as first r the table's. */
+ASP_FN void student_near_n(const asp_shape *k, size_t n, IN vx, IN vy, IN vz, IN u1, IN r, BLOCK)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        student_search a = student_start(k, aspi_vector(vx[i], vy[i], vz[i]), u1[i]);
+        a.r = aspi_max(a.side * r[i], R(1e-12));
+        STUDENT_STORE(a, f, i)
+        f[6][i] = a.turn;
+        f[7][i] = a.r_view;
+    }
 }
 #endif
 
@@ -274,13 +327,13 @@ ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_rea
                                      asp_real *ASP_RESTRICT my, asp_real *ASP_RESTRICT mz)
 {
     asp_real f[8][STUDENT_BLOCK], v[3][STUDENT_BLOCK], r[STUDENT_BLOCK], p[2][STUDENT_BLOCK], q[STUDENT_BLOCK];
-    int is_short = ASP_PRECISION == 32 && k->table[STUDENT_SHORT] > R(0.0), below, step;
+    int is_short = k->table[STUDENT_SHORT] > R(0.0), rest, step, at[STUDENT_BLOCK];
     size_t from, m;
+    const asp_real *tables = k->table + STUDENT_ACROSS, *ready = NULL, *along = NULL, *patches = NULL;
 #if ASP_PRECISION == 32
-    int at[STUDENT_BLOCK];
     asp_real copy[STUDENT_TABLES + ASP_PATCHES_SPARE];
-    const asp_real *tables = k->table + STUDENT_ACROSS, *along = NULL, *patches = NULL;
-    const asp_real *ready = n < STUDENT_BLOCK ? NULL : aspi_patches_ready(tables, 2, STUDENT_TABLES, copy);
+    if (n >= STUDENT_BLOCK)
+        ready = aspi_patches_ready(tables, 2, STUDENT_TABLES, copy);
     if (ready) {
         along = ready + (STUDENT_ALONG - STUDENT_ACROSS);
         patches = ready + (STUDENT_PATCHES - STUDENT_ACROSS);
@@ -288,28 +341,35 @@ ASP_CLONES static void ndf_visible_n(const asp_shape *k, size_t n, const asp_rea
 #endif
     for (from = 0; from < n; from += STUDENT_BLOCK) {
         m = n - from < STUDENT_BLOCK ? n - from : STUDENT_BLOCK;
-        below = student_views_n(k, m, R(1.0), wx + from, wy + from, wz + from, v[0], v[1], v[2]);
-#if ASP_PRECISION == 32
+        rest = student_views_n(k, m, R(1.0), wx + from, wy + from, wz + from, v[0], v[1], v[2]);
         if (is_short) {
             student_see_n(k, m, v[0], v[1], v[2], f[0], f[1], at);
             aspi_octaves_n(k->table + STUDENT_ALONG, along, m, u1 + from, f[2]);
             student_aim_n(k, m, f[2], u1 + from, at, f[3]);
             aspi_patches_n(k->table + STUDENT_PATCHES, patches, m, at, f[3], f[1], r);
         }
+#if ASP_PRECISION == 32
         aspi_octaves_n(tables, ready, m, u2 + from, q);
 #else
+        (void)tables;
+        (void)ready;
         student_quantile_n(k, m, u2 + from, q);
+        if (is_short) {
+            rest = (int)student_margins_n(m, v[2], u1 + from);
+            student_near_n(k, m, v[0], v[1], v[2], u1 + from, r, f);
+            student_step_n(k, m, 0, f);
+            student_step_n(k, m, 0, f);
+            student_long_n(m, f, r);
+        }
 #endif
-        if (below || !is_short) {
+        if (rest || !is_short) {
             student_start_n(k, m, v[0], v[1], v[2], u1 + from, f);
             student_step_n(k, m, 1, f);
             for (step = 0; step < STUDENT_MORE_STEPS; step++)
                 student_step_n(k, m, 0, f);
-#if ASP_PRECISION == 32
             if (is_short)
-                student_below_n(m, v[2], f, r);
+                student_rest_n(m, v[2], u1 + from, f, r);
             else
-#endif
                 student_long_n(m, f, r);
         }
         student_slope_n(k, m, r, p[0], p[1]);
