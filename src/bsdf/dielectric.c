@@ -68,7 +68,6 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define facet_density ASP_NDF_NAME(_facet_density)
 #define index_of ASP_NDF_NAME(_index_of)
 #define bend ASP_NDF_NAME(_bend)
-#define scales ASP_NDF_NAME(_scales)
 #define sample_as ASP_NDF_NAME(_sample_as)
 #define crossing_weight ASP_NDF_NAME(_crossing_weight)
 #define staying_weight ASP_NDF_NAME(_staying_weight)
@@ -222,8 +221,6 @@ ASP_FN asp_real joint_reflected(const asp_shape *shape, const case_of *k, asp_re
     return aspi_joint(k->wi.z, k->wo.z, si, so, k->m.z, k->c, k->c, mask);
 }
 
-ASP_FN int scales(const asp_mat *mat) { return mat->transport != ASP_IMPORTANCE && !(mat->a.r > R(0.0)); }
-
 /* f times |cos_o|^cosine. */
 static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, asp_c3 *out)
 {
@@ -241,7 +238,7 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
             asp_real so = aspi_sigma_of(&mat->ndf, aspi_turned(k.wo, R(-1.0), 0));
             asp_real G2 = refracted_masking(&mat->ndf, &k, area_i(&mat->ndf, &k, mat->mask), so, mat->mask);
             f = (R(1.0) - k.F) * aspi_finite(k.c * D * aspi_bent_density(k.c, k.wm, k.eta) * G2 / k.wi.z)
-              * aspi_crossing_scale(k.eta, scales(mat));
+              * aspi_crossing_scale(k.eta, aspi_crossing_scales(mat->transport, mat->a.r));
             f = cosine ? f : f / co;
         }
     }
@@ -353,7 +350,8 @@ ASP_FN void sample_as(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_rea
         return;
     if (k.refracts && !thin) {
         /* first what need not be kept while sigma is called */
-        asp_real a = area_i(shape, &k, mask), by = crossing_weight(&k, aspi_crossing_scale(k.eta, scales(mat)));
+        asp_real a = area_i(shape, &k, mask), scale = aspi_crossing_scale(k.eta, aspi_crossing_scales(mat->transport, mat->a.r));
+        asp_real by = crossing_weight(&k, scale);
         weight = aspi_sigma_of(shape, aspi_turned(k.wo, R(-1.0), 0));
         weight = refracted_masking(shape, &k, a, weight, mask) * by;
     } else {
@@ -416,7 +414,7 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
     asp_real G2[ASP_BLOCK];
     int far[ASP_BLOCK];
     asp_real index = mat->c.r, inverse = R(1.0) / mat->c.r;
-    int denser = scales(mat);
+    int denser = aspi_crossing_scales(mat->transport, mat->a.r);
     size_t i;
     if (mat->a.r > R(0.0) || index == R(1.0) || mat->mask != 0 || !n)
         return 0;

@@ -13,6 +13,7 @@
 #define aspi_around ASP_NAME(aspi_around)
 #define aspi_turned ASP_NAME(aspi_turned)
 #define aspi_crossing_scale ASP_NAME(aspi_crossing_scale)
+#define aspi_crossing_scales ASP_NAME(aspi_crossing_scales)
 #endif
 
 #if (ASP_PRECISION == 64 && !defined(ASPI_REFRACTION_64)) || \
@@ -33,7 +34,10 @@ ASP_FN asp_v3 aspi_turned(asp_v3 w, asp_real sign, int thin)
     return w;
 }
 
-/* What crosses into the index eta is scaled so, where `scales` says that it is: radiance, but for sheets. */
+/* Whether what crosses is scaled: radiance is, but by sheets. */
+ASP_FN int aspi_crossing_scales(int transport, asp_real thin) { return transport != ASP_IMPORTANCE && !(thin > R(0.0)); }
+
+/* What crosses into the index eta is scaled so, where `scales` says that it is. */
 ASP_FN asp_real aspi_crossing_scale(asp_real eta, int scales) { return scales ? R(1.0) / (eta * eta) : R(1.0); }
 
 /* Where light that comes from v goes behind the facet m, v.m >= 0: a unit vector away from the surface

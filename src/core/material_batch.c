@@ -303,7 +303,8 @@ ASP_FN void block_ones(asp_real ones[ASP_BLOCK])
         ones[i] = R(1.0);
 }
 
-/* The model's value from the Fresnel term at the squared cosines c2; x/over multiplies what comes from facets. */
+/* The model's value from the Fresnel term at the squared cosines c2; x/over multiplies what comes from facets, and
+ * y, NULL for the same, what comes from a base. */
 ASP_FN void block_value(const asp_mat *mat, size_t n, const asp_real *c2, const asp_real *x,
                         const asp_real *over, const asp_real *y, asp_c3s out)
 {
@@ -315,7 +316,7 @@ ASP_FN void block_value(const asp_mat *mat, size_t n, const asp_real *c2, const 
     block_ones(ones);
     block_fresnel(mat, n, c2, ones, ones, out);
     loop_ratio(n, x, over, part);
-    mat->model->ASPI_CALL(value_n)(mat, n, part, y, out.r, out.g, out.b);
+    mat->model->ASPI_CALL(value_n)(mat, n, part, y ? y : part, out.r, out.g, out.b);
 }
 
 ASP_FN void block_share(const asp_mat *mat, size_t n, const asp_real *ci, asp_real *share)
@@ -381,7 +382,6 @@ ASP_CLONES static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s 
 {
     const asp_shape *k = &mat->ndf;
     asp_real mz2[ASP_BLOCK], c2[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], x[ASP_BLOCK], over[ASP_BLOCK];
-    asp_real y[ASP_BLOCK];
     asp_mirrored_s to;
     if (!n)
         return;
@@ -398,12 +398,7 @@ ASP_CLONES static void block_sample_pure(const asp_mat *mat, size_t n, asp_cv3s 
         loop_weights(k, n, 0, wi, wo.x, wo.y, wo.z, mz2, c2, si, so, x, over);
     else
         loop_weights(k, n, mat->mask, wi, wo.x, wo.y, wo.z, mz2, c2, si, so, x, over);
-    if (mat->model->ASPI_CALL(value)) {
-        loop_ratio(n, x, over, y);
-        block_value(mat, n, c2, x, over, y, F);
-    } else {
-        block_value(mat, n, c2, x, over, x, F);
-    }
+    block_value(mat, n, c2, x, over, NULL, F);
 }
 
 ASP_CLONES static void block_sample_mixed(const asp_mat *mat, size_t n, asp_cv3s wi,

@@ -84,7 +84,7 @@ ASP_FN asp_real student_sigma(const asp_shape *k, asp_real w, asp_real s2)
 }
 
 #if ASP_PRECISION == 32
-/* sigma for w >= 0 without a power, where student_guess.c found a polynomial: with the denominator
+/* sigma for w >= 0 without a power, where student_tables.c found a polynomial: with the denominator
  * a w + sqrt(b w^2 + k s2) and x = w over it, w + (denominator - w) (at_0 + x Q(x)): exact at s = 0 and
  * at w = 0. Relative error 5e-7. */
 ASP_FN asp_real student_above_denominator(const asp_shape *k, asp_real w, asp_real s2)

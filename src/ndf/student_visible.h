@@ -9,7 +9,6 @@
 #define student_view_place ASP_NDF_NAME(_view_place)
 #define student_along_place ASP_NDF_NAME(_along_place)
 #define student_slope ASP_NDF_NAME(_slope)
-#define student_over ASP_NDF_NAME(_over)
 #define student_turned ASP_NDF_NAME(_turned)
 #define student_long_way ASP_NDF_NAME(_long_way)
 #define student_start_n ASP_NDF_NAME(_start_n)
@@ -28,7 +27,6 @@
 #define student_aim_n ASP_NDF_NAME(_aim_n)
 #define student_slope_n ASP_NDF_NAME(_slope_n)
 #define student_quantile_n ASP_NDF_NAME(_quantile_n)
-#define student_across_n ASP_NDF_NAME(_across_n)
 #define student_turned_n ASP_NDF_NAME(_turned_n)
 #endif
 
