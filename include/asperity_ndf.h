@@ -76,10 +76,18 @@ typedef struct asp_reflectionf {
     float wo_x, m_z2, wo_y, cosine2, wo_z, pdf, sigma_i, sigma_o;
 } asp_reflectionf;
 
-/* What a facet that refracts has to know: a unit visible normal seen from wi, its density of normals, and the
- * projected area from wi. */
-typedef struct asp_facet { double m_x, density, sigma_i, m_z, m_y; } asp_facet;
-typedef struct asp_facetf { float m_x, density, sigma_i, m_z, m_y; } asp_facetf;
+/* The same of a dielectric: F of the facet, which reflects where u3 < F; wo, of length 1 to rounding, its
+ * density, and the projected area from the side of the surface where it leaves. The facet is a vector m of length
+ * 1/sqrt(q): m_z, wi_m = wi.m and, of light that crosses, wo_m = -eta wo.m. Gaps hold nothing: neighbours would be
+ * packed into one wide store, which waits for the last of them. */
+typedef struct asp_refraction {
+    double wo_x, gap0, F, gap1, wo_y, gap2, pdf, gap3, wo_z, gap4, sigma_i, gap5, q, gap6, sigma_o, gap7, m_z, gap8, wi_m,
+        gap9, wo_m;
+} asp_refraction;
+typedef struct asp_refractionf {
+    float wo_x, gap0, F, gap1, wo_y, gap2, pdf, gap3, wo_z, gap4, sigma_i, gap5, q, gap6, sigma_o, gap7, m_z, gap8, wi_m,
+        gap9, wo_m;
+} asp_refractionf;
 
 /* The reflections of a block. */
 typedef struct asp_reflections {
@@ -89,6 +97,10 @@ typedef struct asp_reflectionsf {
     float *wo_x, *m_z2, *wo_y, *cosine2, *wo_z, *pdf, *sigma_i, *sigma_o;
 } asp_reflectionsf;
 
+/* The refractions of a block, but for the facets. */
+typedef struct asp_refractions { double *wo_x, *wo_y, *wo_z, *F, *pdf, *sigma_i, *sigma_o; } asp_refractions;
+typedef struct asp_refractionsf { float *wo_x, *wo_y, *wo_z, *F, *pdf, *sigma_i, *sigma_o; } asp_refractionsf;
+
 /* The distribution in one precision, as the world sees it, through its slope map; ndf_loops.h makes
  * all of it from the four formulas.
  *     density    D(m): finite, 0 where m.z <= 0; m need not be unit, D is homogeneous of degree -4
@@ -96,7 +108,8 @@ typedef struct asp_reflectionsf {
  *     visible    a unit normal seen from w
  *     normal     a unit normal with density D(m) m.z
  *     reflect    visible, mirror wi in it, and what is known of both directions
- *     facet      visible, density and sigma at once, bit for bit
+ *     refract    visible, mirror wi in it or refract it by u3; eta is the index of the other side over that of
+ *                the side of wi, wi.z > 0, and inverse 1/eta
  * Loops take a block of n elements, n <= ASP_BLOCK (number.h: 256 in float32, 128 in float64), and
  * their outputs do not overlap anything else. Vectors go number by number: small structs of floats pass
  * through memory in the usual calling convention and stall there. */
@@ -107,8 +120,8 @@ typedef struct asp_ndf_ops {
     void (*normal)(const asp_ndf *k, double u1, double u2, double m[3]);
     void (*reflect)(const asp_ndf *k, double wi_x, double wi_y, double wi_z, double u1, double u2,
                     asp_reflection *out);
-    void (*facet)(const asp_ndf *k, double wi_x, double wi_y, double wi_z, double u1, double u2,
-                  asp_facet *out);
+    void (*refract)(const asp_ndf *k, double wi_x, double wi_y, double wi_z, double u1, double u2, double u3,
+                    double eta, double inverse, asp_refraction *out);
     void (*density_n)(const asp_ndf *k, size_t n, const double *mx, const double *my,
                       const double *mz, double *out);
     void (*sigma_n)(const asp_ndf *k, size_t n, double sign, const double *wx, const double *wy,
@@ -120,6 +133,9 @@ typedef struct asp_ndf_ops {
                      double *mx, double *my, double *mz);
     void (*reflect_n)(const asp_ndf *k, size_t n, const double *wx, const double *wy, const double *wz,
                       const double *u1, const double *u2, const asp_reflections *out);
+    void (*refract_n)(const asp_ndf *k, size_t n, const double *wx, const double *wy, const double *wz,
+                      const double *u1, const double *u2, const double *u3, const double *eta,
+                      const double *inverse, const asp_refractions *out);
 } asp_ndf_ops;
 
 typedef struct asp_ndf_opsf {
@@ -129,8 +145,8 @@ typedef struct asp_ndf_opsf {
     void (*normal)(const asp_ndff *k, float u1, float u2, float m[3]);
     void (*reflect)(const asp_ndff *k, float wi_x, float wi_y, float wi_z, float u1, float u2,
                     asp_reflectionf *out);
-    void (*facet)(const asp_ndff *k, float wi_x, float wi_y, float wi_z, float u1, float u2,
-                  asp_facetf *out);
+    void (*refract)(const asp_ndff *k, float wi_x, float wi_y, float wi_z, float u1, float u2, float u3,
+                    float eta, float inverse, asp_refractionf *out);
     void (*density_n)(const asp_ndff *k, size_t n, const float *mx, const float *my,
                       const float *mz, float *out);
     void (*sigma_n)(const asp_ndff *k, size_t n, float sign, const float *wx, const float *wy,
@@ -142,6 +158,9 @@ typedef struct asp_ndf_opsf {
                      float *mx, float *my, float *mz);
     void (*reflect_n)(const asp_ndff *k, size_t n, const float *wx, const float *wy, const float *wz,
                       const float *u1, const float *u2, const asp_reflectionsf *out);
+    void (*refract_n)(const asp_ndff *k, size_t n, const float *wx, const float *wy, const float *wz,
+                      const float *u1, const float *u2, const float *u3, const float *eta,
+                      const float *inverse, const asp_refractionsf *out);
 } asp_ndf_opsf;
 
 /* How a spec gives the slope map. */
@@ -187,7 +206,8 @@ void asp_ndf_stretch(asp_ndf *out, double by);
 #endif
 
 #define ASP_NDF_OPS_(n, s) { n##density_1##s, n##sigma_1##s, n##visible_1##s, n##normal_1##s, n##reflect_1##s, \
-    n##facet_1##s, n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s, n##reflect_n##s }
+    n##refract_1##s, n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s, n##reflect_n##s, \
+    n##refract_n##s }
 #define ASP_NDF_OPS_LATTICE(n, lattice) ASP_NDF_OPS_(n##_, _64), ASP_NDF_OPS_(n##_, _32), lattice
 #define ASP_NDF_OPS(n) ASP_NDF_OPS_LATTICE(n, NULL)
 

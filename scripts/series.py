@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Coefficients of float32's logarithm and of its sine and cosine in include/asperity/elementary.h, and of the
-reciprocal gamma functions in src/bsdf/dielectric.c.
+gamma functions in src/bsdf/dielectric.c.
 
 log(1 + f) = f - f^2/2 + f^3 q(f), 1 + f within [sqrt(1/2), sqrt(2)];
 sin(pi x/2) = x + x (1 - x^2) g(x^2), cos(pi x/2) = (1 - x^2)(1 - x^2 r(x^2)), x within [-1, 1].
-1/Gamma(3/2 + t), |t| <= 1/2, and 1/Gamma(3 + t), |t| <= 1.
+Gamma(3/2 + t), |t| <= 1/2, and 1/Gamma(3 + t), |t| <= 1.
 Each is interpolated at Chebyshev points and printed as a polynomial, lowest power first, with the largest
 error of the function: relative for the logarithm and the gamma functions,
 absolute for the others. Needs mpmath.
@@ -58,6 +58,6 @@ show('sin', lambda z: (mp.sin(mp.pi / 2 * mp.sqrt(z)) / mp.sqrt(z) - 1) / (1 - z
      lambda z, e: mp.sqrt(z) * (1 - z) * e)
 show('cos', lambda z: (1 - mp.cos(mp.pi / 2 * mp.sqrt(z)) / (1 - z)) / z, mp.mpf(0), mp.mpf(1), 3,
      lambda z, e: z * (1 - z) * e)
-show('1/gamma from 1 to 2', lambda t: mp.rgamma(mp.mpf(3) / 2 + t), -mp.mpf(1) / 2, mp.mpf(1) / 2, 7,
-     lambda t, e: e * mp.gamma(mp.mpf(3) / 2 + t))
+show('gamma from 1 to 2', lambda t: mp.gamma(mp.mpf(3) / 2 + t), -mp.mpf(1) / 2, mp.mpf(1) / 2, 9,
+     lambda t, e: e / mp.gamma(mp.mpf(3) / 2 + t))
 show('1/gamma from 2 to 4', lambda t: mp.rgamma(3 + t), mp.mpf(-1), mp.mpf(1), 9, lambda t, e: e * mp.gamma(3 + t))

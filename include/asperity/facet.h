@@ -66,7 +66,7 @@ ASP_FN asp_real aspi_dot(asp_v3 a, asp_v3 b) { return a.x * b.x + a.y * b.y + a.
 
 ASP_FN asp_real aspi_length2(asp_v3 a) { return a.x * a.x + a.y * a.y; }
 
-ASP_FN asp_real aspi_finite(asp_real x) { return x > ASP_LARGEST ? ASP_LARGEST : x; }
+ASP_FN asp_real aspi_finite(asp_real x) { return aspi_min(x, ASP_LARGEST); }
 
 /* Slopes whose square is beyond this have density 0; the formulas' powers must not overflow. */
 #define ASP_STEEPEST (ASP_PRECISION == 64 ? R(1e150) : R(1e18))

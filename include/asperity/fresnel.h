@@ -6,7 +6,7 @@
 #define ASP_FRESNEL_NAMES
 #define aspi_unit_cosine ASP_NAME(aspi_unit_cosine)
 #define aspi_fresnel_dielectric ASP_NAME(aspi_fresnel_dielectric)
-#define aspi_dielectric ASP_NAME(aspi_dielectric)
+#define aspi_dielectric_between ASP_NAME(aspi_dielectric_between)
 #define aspi_fresnel_conductor ASP_NAME(aspi_fresnel_conductor)
 #define aspi_conductor_ratio ASP_NAME(aspi_conductor_ratio)
 #define aspi_fresnel_conductor_at ASP_NAME(aspi_fresnel_conductor_at)
@@ -28,9 +28,17 @@ ASP_FN asp_real aspi_unit_cosine(asp_real c)
     return low > R(1.0) ? R(1.0) : low;
 }
 
-/* Walter et al. 2007, eq. 22, over one denominator, as .x; .y is its g, eta times the cosine on the other side.
- * g^2 < 0 is total internal reflection. */
-ASP_FN asp_v2 aspi_dielectric(asp_real cosine, asp_real eta)
+/* Walter et al. 2007, eq. 22, over one denominator; g is eta times the cosine on the other side. */
+ASP_FN asp_real aspi_dielectric_between(asp_real c, asp_real g)
+{
+    asp_real difference = g - c, sum = g + c;
+    asp_real p = c * sum - R(1.0), q = c * difference + R(1.0);
+    asp_real over = sum * sum * (q * q);
+    return R(0.5) * (difference * difference) * (q * q + p * p) / (over < R(1e-30) ? R(1e-30) : over);
+}
+
+/* g^2 < 0 is total internal reflection. */
+ASP_FN asp_real aspi_fresnel_dielectric(asp_real cosine, asp_real eta)
 {
     asp_real c = aspi_unit_cosine(cosine);
     /* each form keeps its digits where the other cancels: eta near 1, and eta near 0 */
@@ -38,18 +46,9 @@ ASP_FN asp_v2 aspi_dielectric(asp_real cosine, asp_real eta)
     asp_real small = eta * eta - (R(1.0) - c) * (R(1.0) + c);
     asp_real g2 = eta < R(0.5) ? small : near;
     asp_real g = aspi_sqrt(g2 < R(0.0) ? R(0.0) : g2);
-    asp_real difference = g - c, sum = g + c;
-    asp_real p = c * sum - R(1.0), q = c * difference + R(1.0);
-    asp_real over = sum * sum * (q * q);
-    asp_real f = R(0.5) * (difference * difference) * (q * q + p * p)
-               / (over < R(1e-30) ? R(1e-30) : over);
-    asp_v2 out;
-    out.x = g2 < R(0.0) ? R(1.0) : f;
-    out.y = g;
-    return out;
+    asp_real f = aspi_dielectric_between(c, g);
+    return g2 < R(0.0) ? R(1.0) : f;
 }
-
-ASP_FN asp_real aspi_fresnel_dielectric(asp_real cosine, asp_real eta) { return aspi_dielectric(cosine, eta).x; }
 
 /* Unpolarised reflectance of eta + i k at the squared cosine c2: Rs = (t1 - t2)/(t1 + t2),
  * Rp = Rs (t3 - t4)/(t3 + t4), and their mean .x/.y. */

@@ -3,6 +3,7 @@
  * Read once per precision, after the formulas. Nothing here knows which distribution it serves. */
 
 #include "asperity/facet.h"
+#include "asperity/split.h"
 
 /* ---- the formulas at vectors of the standard frame */
 
@@ -122,6 +123,13 @@ ASP_FN asp_v3 ndf_mirror(asp_v3 wi, asp_v3 back, asp_real q, asp_real *m_z2, asp
     return back;
 }
 
+/* The squared length of a facet drawn. */
+#ifdef ASP_OWN_VISIBLE_N
+#define NDF_LENGTH2(m) R(1.0)
+#else
+#define NDF_LENGTH2(m) aspi_dot(m, m)
+#endif
+
 /* ---- single calls */
 
 static asp_real ndf_density_1(const asp_shape *k, asp_real mx, asp_real my, asp_real mz)
@@ -151,37 +159,68 @@ static void ndf_normal_1(const asp_shape *k, asp_real u1, asp_real u2, asp_real 
     out[2] = m.z;
 }
 
+typedef struct ndf_drawn { asp_v3 m, back; asp_real q; } ndf_drawn;
+
+ASP_FN ndf_drawn ndf_draw(const asp_shape *k, asp_v3 wi, asp_v3 v, asp_real u1, asp_real u2)
+{
+    ndf_drawn d;
+#ifdef ASP_OWN_VISIBLE_N
+    (void)v;
+    d.m = d.back = ndf_world_visible(k, wi, u1, u2);
+    d.q = R(1.0);
+#else
+    (void)wi;
+    d.m = ndf_visible(k, v, u1, u2);
+    d.back = aspi_facet_back(k, d.m);
+    d.q = R(1.0) / aspi_max(aspi_dot(d.back, d.back), ASP_TINY);
+#endif
+    return d;
+}
+
 /* What calls in turn would pass through memory stays in registers. */
 ASP_CLONES_SINGLE static void ndf_reflect_1(const asp_shape *k, asp_real wx, asp_real wy, asp_real wz,
                                             asp_real u1, asp_real u2, asp_mirrored *out)
 {
-    asp_v3 wi = aspi_vector(wx, wy, wz), v = aspi_view(k, wi), m, back, wo;
-    asp_real q = R(1.0);
-#ifdef ASP_OWN_VISIBLE_N
-    m = back = ndf_world_visible(k, wi, u1, u2);
-#else
-    m = ndf_visible(k, v, u1, u2);
-    back = aspi_facet_back(k, m);
-    q = R(1.0) / aspi_max(aspi_dot(back, back), ASP_TINY);
-#endif
-    wo = ndf_mirror(wi, back, q, &out->m_z2, &out->cosine2);
+    asp_v3 wi = aspi_vector(wx, wy, wz), v = aspi_view(k, wi), wo;
+    ndf_drawn d = ndf_draw(k, wi, v, u1, u2);
+    wo = ndf_mirror(wi, d.back, d.q, &out->m_z2, &out->cosine2);
     out->wo_x = wo.x;
     out->wo_y = wo.y;
     out->wo_z = wo.z;
     out->sigma_i = ndf_sigma_at(k, v);
-    out->pdf = ndf_lobe(k, wi.z, m, q, out->sigma_i);
+    out->pdf = ndf_lobe(k, wi.z, d.m, d.q, out->sigma_i);
     out->sigma_o = ndf_sigma_at(k, aspi_view(k, wo));
 }
 
-ASP_CLONES_SINGLE static void ndf_facet_1(const asp_shape *k, asp_real wx, asp_real wy, asp_real wz,
-                                          asp_real u1, asp_real u2, asp_seen *out)
+/* A branch that the processor may guess: F comes late. */
+ASP_CLONES_SINGLE static void ndf_refract_1(const asp_shape *k, asp_real wx, asp_real wy, asp_real wz,
+                                            asp_real u1, asp_real u2, asp_real u3, asp_real eta,
+                                            asp_real inverse, asp_split_ray *out)
 {
-    asp_v3 wi = aspi_vector(wx, wy, wz), m = ndf_world_visible(k, wi, u1, u2);
-    out->m_x = m.x;
-    out->m_y = m.y;
-    out->m_z = m.z;
-    out->sigma_i = ndf_sigma_at(k, aspi_view(k, wi));
-    out->density = ndf_world_density(k, m);
+    asp_v3 wi = aspi_vector(wx, wy, wz), v = aspi_view(k, wi), wo;
+    ndf_drawn d = ndf_draw(k, wi, v, u1, u2);
+    aspi_split s = aspi_split_at(wi, d.back, NDF_LENGTH2(d.back), eta);
+    asp_real sigma_i = ndf_sigma_at(k, v), lobe = ndf_lobe(k, wi.z, d.m, d.q, sigma_i), pdf, sigma_o;
+    if (u3 >= s.F) {
+        wo = aspi_split_way(&s, wi, d.back, d.q, inverse, 1);
+        pdf = aspi_split_density(&s, lobe, d.q, eta, 1);
+        sigma_o = ndf_sigma_at(k, aspi_view(k, aspi_vector(-wo.x, -wo.y, -wo.z)));
+    } else {
+        wo = aspi_split_way(&s, wi, d.back, d.q, inverse, 0);
+        pdf = aspi_split_density(&s, lobe, d.q, eta, 0);
+        sigma_o = ndf_sigma_at(k, aspi_view(k, wo));
+    }
+    out->F = s.F;
+    out->pdf = pdf;
+    out->sigma_i = sigma_i;
+    out->sigma_o = sigma_o;
+    out->q = d.q;
+    out->m_z = d.back.z;
+    out->wi_m = s.d;
+    out->wo_m = s.e;
+    out->wo_x = wo.x;
+    out->wo_y = wo.y;
+    out->wo_z = wo.z;
 }
 
 /* ---- loops */
@@ -244,22 +283,18 @@ ASP_CLONES static void ndf_normal_n(const asp_shape *k, size_t n, const asp_real
 }
 #endif
 
-/* The sign bits tell whether any direction that matters lies below the mean plane: a wo that points down
- * carries no weight. */
-ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT wx,
-                                     const asp_real *ASP_RESTRICT wy,
-                                     const asp_real *ASP_RESTRICT wz,
-                                     const asp_real *ASP_RESTRICT u1,
-                                     const asp_real *ASP_RESTRICT u2, const asp_mirrored_s *out)
+/* Facets in the world (bx, by, z), the squares of their lengths as inverses q where they are not 1, and what
+ * ndf_lobe makes of them. */
+ASP_FN void ndf_draw_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT wx, const asp_real *ASP_RESTRICT wy,
+                       const asp_real *ASP_RESTRICT wz, const asp_real *ASP_RESTRICT u1,
+                       const asp_real *ASP_RESTRICT u2, asp_real *ASP_RESTRICT bx, asp_real *ASP_RESTRICT by,
+                       asp_real *ASP_RESTRICT z, asp_real *ASP_RESTRICT q, asp_real *ASP_RESTRICT si,
+                       asp_real *ASP_RESTRICT p)
 {
-    asp_real *ASP_RESTRICT ox = out->wo_x, *ASP_RESTRICT oy = out->wo_y, *ASP_RESTRICT oz = out->wo_z;
-    asp_real *ASP_RESTRICT mz2 = out->m_z2, *ASP_RESTRICT c2 = out->cosine2, *ASP_RESTRICT p = out->pdf;
-    asp_real *ASP_RESTRICT si = out->sigma_i, *ASP_RESTRICT so = out->sigma_o;
-    asp_real bx[ASP_BLOCK], by[ASP_BLOCK], z[ASP_BLOCK];
-    asp_bits below = 0;
     size_t i;
 #ifndef ASP_OWN_VISIBLE_N
-    asp_real x[ASP_BLOCK], y[ASP_BLOCK], q[ASP_BLOCK];
+    asp_real x[ASP_BLOCK], y[ASP_BLOCK];
+    asp_bits below = 0;
     for (i = 0; i < n; i++) {
         asp_v3 v = aspi_view(k, aspi_vector(wx[i], wy[i], wz[i]));
         aspi_aimed a = ndf_aim_up(k, v);
@@ -294,6 +329,7 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
 #define NDF_Q(i) q[i]
 #define NDF_LOBE(i) ndf_lobe(k, wz[i], aspi_vector(x[i], y[i], z[i]), q[i], si[i])
 #else
+    (void)q;
     ndf_visible_n(k, n, wx, wy, wz, u1, u2, bx, by, z);
     ndf_sigma_n(k, n, R(1.0), wx, wy, wz, si);
     ndf_density_n(k, n, bx, by, z, p);
@@ -303,7 +339,23 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
     ASP_IN_PLACE
     for (i = 0; i < n; i++)
         p[i] = NDF_LOBE(i);
-    below = 0;
+}
+
+/* The sign bits tell whether any direction that matters lies below the mean plane: a wo that points down
+ * carries no weight. */
+ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT wx,
+                                     const asp_real *ASP_RESTRICT wy,
+                                     const asp_real *ASP_RESTRICT wz,
+                                     const asp_real *ASP_RESTRICT u1,
+                                     const asp_real *ASP_RESTRICT u2, const asp_mirrored_s *out)
+{
+    asp_real *ASP_RESTRICT ox = out->wo_x, *ASP_RESTRICT oy = out->wo_y, *ASP_RESTRICT oz = out->wo_z;
+    asp_real *ASP_RESTRICT mz2 = out->m_z2, *ASP_RESTRICT c2 = out->cosine2;
+    asp_real *ASP_RESTRICT so = out->sigma_o;
+    asp_real bx[ASP_BLOCK], by[ASP_BLOCK], z[ASP_BLOCK], q[ASP_BLOCK];
+    asp_bits below = 0;
+    size_t i;
+    ndf_draw_n(k, n, wx, wy, wz, u1, u2, bx, by, z, q, out->sigma_i, out->pdf);
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
         asp_v3 wo = ndf_mirror(aspi_vector(wx[i], wy[i], wz[i]), aspi_vector(bx[i], by[i], z[i]), NDF_Q(i),
@@ -325,6 +377,37 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
     ndf_sigma_n(k, n, R(1.0), ox, oy, oz, so);
 #endif
 }
+
+ASP_CLONES static void ndf_refract_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT wx,
+                                     const asp_real *ASP_RESTRICT wy, const asp_real *ASP_RESTRICT wz,
+                                     const asp_real *ASP_RESTRICT u1, const asp_real *ASP_RESTRICT u2,
+                                     const asp_real *ASP_RESTRICT u3, const asp_real *ASP_RESTRICT eta,
+                                     const asp_real *ASP_RESTRICT inverse, const asp_split_rays *out)
+{
+    asp_real *ASP_RESTRICT ox = out->wo_x, *ASP_RESTRICT oy = out->wo_y, *ASP_RESTRICT oz = out->wo_z;
+    asp_real *ASP_RESTRICT F = out->F, *ASP_RESTRICT p = out->pdf;
+    asp_real bx[ASP_BLOCK], by[ASP_BLOCK], z[ASP_BLOCK], q[ASP_BLOCK];
+    size_t i;
+    ndf_draw_n(k, n, wx, wy, wz, u1, u2, bx, by, z, q, out->sigma_i, p);
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        asp_v3 wi = aspi_vector(wx[i], wy[i], wz[i]), m = aspi_vector(bx[i], by[i], z[i]), wo;
+        aspi_split s = aspi_split_at(wi, m, NDF_LENGTH2(m), eta[i]);
+        int crosses = u3[i] >= s.F;
+        asp_real sign = crosses ? R(-1.0) : R(1.0);
+        F[i] = s.F;
+        p[i] = aspi_split_density(&s, p[i], NDF_Q(i), eta[i], crosses);
+        wo = aspi_split_way(&s, wi, m, NDF_Q(i), inverse[i], crosses);
+        ox[i] = wo.x;
+        oy[i] = wo.y;
+        oz[i] = wo.z;
+        bx[i] = sign * wo.x;
+        by[i] = sign * wo.y;
+        z[i] = sign * wo.z;
+    }
+    ndf_sigma_n(k, n, R(1.0), bx, by, z, out->sigma_o);
+}
+#undef NDF_LENGTH2
 #undef NDF_Q
 #undef NDF_LOBE
 #undef NDF_ANY_BELOW

@@ -87,7 +87,11 @@
 #define ndf_visible_1 ASP_NDF_NAME(_visible_1)
 #define ndf_normal_1 ASP_NDF_NAME(_normal_1)
 #define ndf_reflect_1 ASP_NDF_NAME(_reflect_1)
-#define ndf_facet_1 ASP_NDF_NAME(_facet_1)
+#define ndf_refract_1 ASP_NDF_NAME(_refract_1)
+#define ndf_refract_n ASP_NDF_NAME(_refract_n)
+#define ndf_draw ASP_NDF_NAME(_draw)
+#define ndf_draw_n ASP_NDF_NAME(_draw_n)
+#define ndf_drawn ASP_NDF_NAME(_drawn)
 #define ndf_density_n ASP_NDF_NAME(_density_n)
 #define ndf_sigma_n ASP_NDF_NAME(_sigma_n)
 #define ndf_visible_n ASP_NDF_NAME(_visible_n)
@@ -113,7 +117,8 @@
 #undef asp_c3
 #undef asp_shape
 #undef asp_mirrored
-#undef asp_seen
+#undef asp_split_ray
+#undef asp_split_rays
 #undef asp_mirrored_s
 #if ASP_PRECISION == 64
 #define ASP_SUFFIX _64
@@ -124,7 +129,8 @@
 #define asp_c3 asp_rgb
 #define asp_shape asp_ndf
 #define asp_mirrored asp_reflection
-#define asp_seen asp_facet
+#define asp_split_ray asp_refraction
+#define asp_split_rays asp_refractions
 #define asp_mirrored_s asp_reflections
 #elif ASP_PRECISION == 32
 #define ASP_SUFFIX _32
@@ -135,7 +141,8 @@
 #define asp_c3 asp_rgbf
 #define asp_shape asp_ndff
 #define asp_mirrored asp_reflectionf
-#define asp_seen asp_facetf
+#define asp_split_ray asp_refractionf
+#define asp_split_rays asp_refractionsf
 #define asp_mirrored_s asp_reflectionsf
 #else
 #error "define ASP_PRECISION as 64 or 32"

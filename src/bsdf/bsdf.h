@@ -60,10 +60,8 @@ struct asp_bsdf {
                   asp_rgbf *f);
     double (*pdf)(const asp_material *mat, const asp_vec3 *wi, const asp_vec3 *wo);
     float  (*pdff)(const asp_materialf *mat, const asp_vec3f *wi, const asp_vec3f *wo);
-    void (*sample)(const asp_material *mat, const asp_vec3 *wi, double u1, double u2, double u3,
-                   asp_bsdf_sample *out);
-    void (*samplef)(const asp_materialf *mat, const asp_vec3f *wi, float u1, float u2, float u3,
-                    asp_bsdf_samplef *out);
+    asp_bsdf_sample (*sample)(const asp_material *mat, asp_vec3 wi, double u1, double u2, double u3);
+    asp_bsdf_samplef (*samplef)(const asp_materialf *mat, asp_vec3f wi, float u1, float u2, float u3);
     /* A block of the same, whose outputs may be inputs; u holds u1, u2, u3. Returns 0 where it has to be done
      * one by one; may be NULL. */
     int (*sample_n)(const asp_material *mat, size_t n, const double *const wi[3], const double *const u[3],

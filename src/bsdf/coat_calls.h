@@ -44,18 +44,19 @@ static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
     return wi->z <= R(0.0) ? R(0.0) : pdf;
 }
 
-static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2, asp_real u3,
-                        asp_sampled *out)
+static asp_sampled bsdf_sample(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
 {
-    asp_real share = coat_share(mat, aspi_energy_at(mat, mat->energy, *wi)), pdf;
-    asp_v3 m = ASPI_CALL(asp_sample_visible)(&mat->ndf, *wi, u1, u2);
-    out->wo = u3 < share ? aspi_reflect(*wi, m) : aspi_rest_lobe(mat->energy, *wi, u1, u2);
-    out->pdf = bsdf_pdf(mat, wi, &out->wo);
-    bsdf_eval(mat, wi, &out->wo, 1, &out->weight);
+    asp_sampled out;
+    asp_real share = coat_share(mat, aspi_energy_at(mat, mat->energy, wi)), pdf;
+    asp_v3 m = ASPI_CALL(asp_sample_visible)(&mat->ndf, wi, u1, u2);
+    out.wo = u3 < share ? aspi_reflect(wi, m) : aspi_rest_lobe(mat->energy, wi, u1, u2);
+    out.pdf = bsdf_pdf(mat, &wi, &out.wo);
+    bsdf_eval(mat, &wi, &out.wo, 1, &out.weight);
     /* next to the horizon both may be too small to have an inverse */
-    pdf = out->pdf > R(0.0) ? out->pdf : R(INFINITY);
-    out->weight.r = out->weight.r / pdf;
-    out->weight.g = out->weight.g / pdf;
-    out->weight.b = out->weight.b / pdf;
+    pdf = out.pdf > R(0.0) ? out.pdf : R(INFINITY);
+    out.weight.r = out.weight.r / pdf;
+    out.weight.g = out.weight.g / pdf;
+    out.weight.b = out.weight.b / pdf;
+    return out;
 }
 #undef COAT_SCALE

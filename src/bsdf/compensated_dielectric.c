@@ -164,33 +164,34 @@ static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
     return share < R(1.0) ? share * p + (R(1.0) - share) * rest_density(mat, *wi, *wo) : p;
 }
 
-static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2, asp_real u3,
-                        asp_sampled *out)
+static asp_sampled bsdf_sample(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
 {
-    asp_real share = lobe_share(mat, *wi), pdf, by, w;
+    asp_sampled out;
+    asp_real share = lobe_share(mat, wi), pdf, by, w;
     if (u3 < share || !(share < R(1.0))) {
-        asp_bsdf_dielectric.ASPI_CALL(sample)(mat, wi, u1, u2, share < R(1.0) ? u3 / share : u3, out);
+        out = asp_bsdf_dielectric.ASPI_CALL(sample)(mat, wi, u1, u2, share < R(1.0) ? u3 / share : u3);
         if (!(share < R(1.0))) {
             w = mat->b.r == R(COMPENSATED_TURQUIN) && mat->c.r != R(1.0)
-              ? out->weight.r / aspi_max(side_energy(mat, *wi), R(1e-3)) : out->weight.r;
-        } else if (out->pdf > R(0.0)) {
+              ? out.weight.r / aspi_max(side_energy(mat, wi), R(1e-3)) : out.weight.r;
+        } else if (out.pdf > R(0.0)) {
             /* the facet's own weight: wo carries the facet in its last digits only */
-            pdf = share * out->pdf + (R(1.0) - share) * rest_density(mat, *wi, out->wo);
-            w = out->weight.r * (out->pdf / pdf)
-              + given_back(mat, *wi, out->wo) * aspi_abs(out->wo.z) / pdf;
-            out->pdf = pdf;
+            pdf = share * out.pdf + (R(1.0) - share) * rest_density(mat, wi, out.wo);
+            w = out.weight.r * (out.pdf / pdf)
+              + given_back(mat, wi, out.wo) * aspi_abs(out.wo.z) / pdf;
+            out.pdf = pdf;
         } else {
-            return;
+            return out;
         }
     } else {
-        by = (u3 - share) / (R(1.0) - share) < crossing_share(mat, *wi) ? R(-1.0) : R(1.0);
-        by = wi->z < R(0.0) ? -by : by;
-        out->wo = aspi_rest_lobe(energy_of(mat, by), *wi, u1, u2);
-        out->wo.z = by * out->wo.z;
-        out->pdf = bsdf_pdf(mat, wi, &out->wo);
-        bsdf_eval(mat, wi, &out->wo, 1, &out->weight);
-        w = out->pdf > R(0.0) ? out->weight.r / out->pdf : out->pdf;
+        by = (u3 - share) / (R(1.0) - share) < crossing_share(mat, wi) ? R(-1.0) : R(1.0);
+        by = wi.z < R(0.0) ? -by : by;
+        out.wo = aspi_rest_lobe(energy_of(mat, by), wi, u1, u2);
+        out.wo.z = by * out.wo.z;
+        out.pdf = bsdf_pdf(mat, &wi, &out.wo);
+        bsdf_eval(mat, &wi, &out.wo, 1, &out.weight);
+        w = out.pdf > R(0.0) ? out.weight.r / out.pdf : out.pdf;
     }
-    out->weight.r = out->weight.g = out->weight.b = w;
+    out.weight.r = out.weight.g = out.weight.b = w;
+    return out;
 }
 #endif

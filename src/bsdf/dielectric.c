@@ -58,17 +58,22 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define refracted_masking ASP_NDF_NAME(_refracted_masking)
 #define stirling ASP_NDF_NAME(_stirling)
 #define beta ASP_NDF_NAME(_beta)
+#define near_terms ASP_NDF_NAME(_near_terms)
+#define near_series ASP_NDF_NAME(_near_series)
 #define beta_near ASP_NDF_NAME(_beta_near)
+#define beta_near_1 ASP_NDF_NAME(_beta_near_1)
 #define is_near ASP_NDF_NAME(_is_near)
 #define sheet ASP_NDF_NAME(_sheet)
-#define area_i ASP_NDF_NAME(_area_i)
-#define area_o ASP_NDF_NAME(_area_o)
+#define area_over ASP_NDF_NAME(_area_over)
+#define inverse_of ASP_NDF_NAME(_inverse_of)
 #define lengthened ASP_NDF_NAME(_lengthened)
 #define joint_reflected ASP_NDF_NAME(_joint_reflected)
 #define facet_density ASP_NDF_NAME(_facet_density)
 #define index_of ASP_NDF_NAME(_index_of)
-#define bend ASP_NDF_NAME(_bend)
 #define sample_as ASP_NDF_NAME(_sample_as)
+#define sample_thin ASP_NDF_NAME(_sample_thin)
+#define nothing_of ASP_NDF_NAME(_nothing_of)
+#define crossing_scale ASP_NDF_NAME(_crossing_scale)
 #define crossing_weight ASP_NDF_NAME(_crossing_weight)
 #define staying_weight ASP_NDF_NAME(_staying_weight)
 #define beta_n ASP_NDF_NAME(_beta_n)
@@ -151,74 +156,87 @@ ASP_FN asp_real beta(asp_real p, asp_real q)
     return low ? x : R(0.0);
 }
 
-/* The same for a and b within [1, 2], float32: reciprocal gamma functions as polynomials (scripts/series.py),
- * relative error 4e-7. */
+/* The same for a and b within [1, 2], float32: Gamma(a) and Gamma(b) and 1/Gamma(a + b) as polynomials
+ * (scripts/series.py), relative error 4e-7. */
 ASP_FN int is_near(asp_real a, asp_real b) { return ASP_PRECISION == 32 && aspi_max(a, b) <= R(2.0); }
+
+/* Of each power the coefficients of Gamma(3/2 + t), twice, and of 1/Gamma(3 + t). */
+static const asp_real near_terms[10][4] = {
+    { R(0.8862269557), R(0.8862269557), R(0.4999999876), R(0.0) },
+    { R(0.03233828362), R(0.03233828362), R(-0.4613921502), R(0.0) },
+    { R(0.4148074728), R(0.4148074728), R(0.1141498354), R(0.0) },
+    { R(-0.1072858207), R(-0.1072858207), R(0.03847059524), R(0.0) },
+    { R(0.1448331843), R(0.1448331843), R(-0.03151665695), R(0.0) },
+    { R(-0.07772028495), R(-0.07772028495), R(0.006935187604), R(0.0) },
+    { R(0.05657111942), R(0.05657111942), R(0.0005587637258), R(0.0) },
+    { R(-0.03625772053), R(-0.03625772053), R(-0.0006791526744), R(0.0) },
+    { R(0.03459742257), R(0.03459742257), R(0.0001414160983), R(0.0) },
+    { R(-0.02374981865), R(-0.02374981865), R(-1.148210216e-6), R(0.0) }
+};
+
+/* c[0] + c[1] t + ... + c[9] t^9, numbers or several at once. */
+#define NEAR_SERIES(t, t2, t4, c0, c1, c2, c3, c4, c5, c6, c7, c8, c9) \
+    (((c0 + c1 * t) + (c2 + c3 * t) * t2) + ((c4 + c5 * t) + (c6 + c7 * t) * t2) * t4 + (c8 + c9 * t) * (t4 * t4))
+#define NEAR_SERIES_OF(t, t2, t4, c) NEAR_SERIES(t, t2, t4, c(0), c(1), c(2), c(3), c(4), c(5), c(6), c(7), c(8), c(9))
+
+ASP_FN asp_real near_series(asp_real t, int j)
+{
+    asp_real t2 = t * t, t4 = t2 * t2;
+#define NEAR_TERM(i) near_terms[i][j]
+    return NEAR_SERIES_OF(t, t2, t4, NEAR_TERM);
+#undef NEAR_TERM
+}
 
 ASP_FN asp_real beta_near(asp_real a, asp_real b)
 {
-    asp_real x = a - R(1.5), y = b - R(1.5), s = a + b - R(3.0);
-    asp_real x2 = x * x, y2 = y * y, s2 = s * s, ex, ox, ey, oy, es, os;
-    ex = R(0.006062104116);
-    ey = R(0.006062104116);
-    es = R(0.0001414160983);
-    ox = R(0.002203451363);
-    oy = R(0.002203451363);
-    os = R(-1.148210216e-6);
-    ex = ex * x2 + R(0.05105268071);
-    ey = ey * y2 + R(0.05105268071);
-    es = es * s2 + R(0.0005587637258);
-    ox = ox * x2 + R(-0.04217049317);
-    oy = oy * y2 + R(-0.04217049317);
-    os = os * s2 + R(-0.0006791526744);
-    ex = ex * x2 + R(-0.5266587205);
-    ey = ey * y2 + R(-0.5266587205);
-    es = es * s2 + R(-0.03151665695);
-    ox = ox * x2 + R(0.1751030837);
-    oy = oy * y2 + R(0.1751030837);
-    os = os * s2 + R(0.006935187604);
-    ex = ex * x2 + R(1.128379201);
-    ey = ey * y2 + R(1.128379201);
-    es = es * s2 + R(0.1141498354);
-    ox = ox * x2 + R(-0.0411745462);
-    oy = oy * y2 + R(-0.0411745462);
-    os = os * s2 + R(0.03847059524);
-    es = es * s2 + R(0.4999999876);
-    os = os * s2 + R(-0.4613921502);
-    return (os * s + es) / ((ox * x + ex) * (oy * y + ey));
+    return near_series(a - R(1.5), 0) * near_series(b - R(1.5), 1) * near_series(a + b - R(3.0), 2);
 }
 
-/* Masked area over cosine, 1 + Lambda, of wi, and of light that crosses, which sees from below. */
-ASP_FN asp_real area_i(const asp_shape *shape, const case_of *k, int mask)
+/* The same for a single pair, the three side by side. */
+ASP_FN asp_real beta_near_1(asp_real a, asp_real b)
 {
-    return aspi_masked(shape, k->wi, k->sigma_i, mask) / k->wi.z;
+#if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__CUDA__)
+    typedef asp_real four __attribute__((vector_size(4 * sizeof(asp_real))));
+    four t = { a - R(1.5), b - R(1.5), a + b - R(3.0), R(0.0) }, t2 = t * t, t4 = t2 * t2, c[10];
+    memcpy(c, near_terms, sizeof c);
+#define NEAR_TERM(i) c[i]
+    t = NEAR_SERIES_OF(t, t2, t4, NEAR_TERM);
+#undef NEAR_TERM
+    return t[0] * t[1] * t[2];
+#else
+    return beta_near(a, b);
+#endif
 }
 
-ASP_FN asp_real area_o(const asp_shape *shape, asp_v3 wo, asp_real sigma_o, int mask)
+ASP_FN asp_real inverse_of(asp_real cosine) { return R(1.0) / aspi_max(cosine, ASP_TINY); }
+
+/* Masked area over cosine, 1 + Lambda, of a direction above. */
+ASP_FN asp_real area_over(const asp_shape *shape, asp_v3 w, asp_real sigma, asp_real inverse, int mask)
 {
-    return aspi_masked(shape, aspi_turned(wo, R(-1.0), 0), sigma_o, mask) / aspi_abs(wo.z);
+    return aspi_masked(shape, w, sigma, mask) * inverse;
 }
 
-/* G2 of light that crosses, from area_i and sigma_o. Heitz 2014, sec. 5.4 (after Dupuy): B(1 + Lambda_i,
- * 1 + Lambda_o). V-cavities: what both sides leave of a groove, G1 + G1 - 1. */
-ASP_FN asp_real refracted_masking(const asp_shape *shape, const case_of *k, asp_real a, asp_real sigma_o, int mask)
+/* G2 of light that crosses, from 1 + Lambda of both sides. Heitz 2014, sec. 5.4 (after Dupuy): B(1 + Lambda_i,
+ * 1 + Lambda_o). V-cavities, from the cosines: what both sides leave of a groove, G1 + G1 - 1. */
+ASP_FN asp_real refracted_masking(asp_real a, asp_real b, asp_real mz, asp_real ci, asp_real co, asp_real c_i,
+                                  asp_real c_o, int mask)
 {
-    asp_real ci = k->wi.z, co = aspi_abs(k->wo.z), b = area_o(shape, k->wo, sigma_o, mask);
     if ((mask & 15) == ASP_MASK_UNCORRELATED)
         return R(1.0) / (a * b);
     if ((mask & 15) == ASP_MASK_V_CAVITY) {
-        asp_real open_i = aspi_min(R(1.0), R(2.0) * k->m.z * ci / k->c);
-        asp_real open_o = aspi_min(R(1.0), R(2.0) * k->m.z * co / aspi_max(-k->wm, ASP_SMALLEST));
+        asp_real open_i = aspi_min(R(1.0), R(2.0) * mz * ci / aspi_max(c_i, ASP_SMALLEST));
+        asp_real open_o = aspi_min(R(1.0), R(2.0) * mz * co / aspi_max(c_o, ASP_SMALLEST));
         return aspi_max(open_i + open_o - R(1.0), R(0.0));
     }
-    return is_near(a, b) ? beta_near(a, b) : beta(a, b);
+    return is_near(a, b) ? beta_near_1(a, b) : beta(a, b);
 }
 
 /* G2 / (ci co) of a reflection. */
-ASP_FN asp_real joint_reflected(const asp_shape *shape, const case_of *k, asp_real sigma_o, int mask)
+ASP_FN asp_real joint_reflected(const asp_shape *shape, asp_v3 wi, asp_v3 wo, asp_real sigma_i, asp_real sigma_o,
+                                asp_real mz, asp_real c, int mask)
 {
-    asp_real si = aspi_masked(shape, k->wi, k->sigma_i, mask), so = aspi_masked(shape, k->wo, sigma_o, mask);
-    return aspi_joint(k->wi.z, k->wo.z, si, so, k->m.z, k->c, k->c, mask);
+    asp_real si = aspi_masked(shape, wi, sigma_i, mask), so = aspi_masked(shape, wo, sigma_o, mask);
+    return aspi_joint(wi.z, wo.z, si, so, mz, c, c, mask);
 }
 
 /* f times |cos_o|^cosine. */
@@ -232,11 +250,14 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
         if (!k.refracts || thin) {
             asp_real so = aspi_sigma_of(&mat->ndf, k.wo);
             asp_real share = k.refracts ? R(1.0) - k.F : k.F;
-            f = share * aspi_finite(R(0.25) * D * joint_reflected(&mat->ndf, &k, so, mat->mask));
+            f = share * aspi_finite(R(0.25) * D * joint_reflected(&mat->ndf, k.wi, k.wo, k.sigma_i, so, k.m.z, k.c, mat->mask));
             f = cosine ? f * co : f;
         } else if (k.wm < R(0.0)) {
-            asp_real so = aspi_sigma_of(&mat->ndf, aspi_turned(k.wo, R(-1.0), 0));
-            asp_real G2 = refracted_masking(&mat->ndf, &k, area_i(&mat->ndf, &k, mat->mask), so, mat->mask);
+            asp_v3 below = aspi_turned(k.wo, R(-1.0), 0);
+            asp_real so = aspi_sigma_of(&mat->ndf, below);
+            asp_real a = area_over(&mat->ndf, k.wi, k.sigma_i, inverse_of(k.wi.z), mat->mask);
+            asp_real b = area_over(&mat->ndf, below, so, inverse_of(co), mat->mask);
+            asp_real G2 = refracted_masking(a, b, k.m.z, k.wi.z, co, k.c, -k.wm, mat->mask);
             f = (R(1.0) - k.F) * aspi_finite(k.c * D * aspi_bent_density(k.c, k.wm, k.eta) * G2 / k.wi.z)
               * aspi_crossing_scale(k.eta, aspi_crossing_scales(mat->transport, mat->a.r));
             f = cosine ? f : f / co;
@@ -266,115 +287,116 @@ static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
 }
 
 /* The index of the other side over that of the side of `sign`. */
-ASP_FN asp_real index_of(asp_real sign, asp_real eta, asp_real inverse, int thin)
-{
-    return sign < R(0.0) && !thin ? inverse : eta;
-}
+ASP_FN asp_real index_of(asp_real sign, asp_real eta, asp_real inverse) { return sign < R(0.0) ? inverse : eta; }
 
-/* Reflection or refraction at the facet m by F (Walter et al. 2007, eqs. 39-40); wo, a unit vector to rounding,
- * is on the side that it should be on unless single scattering loses this light. */
-ASP_FN case_of bend(asp_v3 v, asp_v3 m, asp_real eta, asp_real inverse, asp_real u3, int thin)
+/* sign w of length 1: a step towards 1/|w| from 1, |w| is 1 to rounding. */
+ASP_FN asp_v3 lengthened(asp_v3 w, asp_real sign)
 {
-    case_of k;
-    asp_v2 f;
-    asp_real by, of_v, cosine;
-    k.wi = v;
-    k.m = m;
-    k.eta = eta;
-    k.c = aspi_dot(v, m);
-    f = aspi_dielectric(k.c, eta);
-    k.F = sheet(f.x, thin);
-    k.refracts = u3 >= k.F;
-    cosine = f.y * inverse;
-    by = k.refracts && !thin ? k.c * inverse - cosine : R(2.0) * k.c;
-    of_v = k.refracts && !thin ? inverse : R(1.0);
-    k.wm = k.refracts && !thin ? -cosine : k.c;
-    k.wo.x = by * m.x - of_v * v.x;
-    k.wo.y = by * m.y - of_v * v.y;
-    k.wo.z = by * m.z - of_v * v.z;
-    return k;
-}
-
-/* w of length 1: a step towards 1/|w| from 1, |w| is 1 to rounding. */
-ASP_FN asp_v3 lengthened(asp_v3 w)
-{
-    asp_real by = R(1.5) - R(0.5) * aspi_dot(w, w);
+    asp_real by = sign * (R(1.5) - R(0.5) * aspi_dot(w, w));
     w.x = by * w.x;
     w.y = by * w.y;
     w.z = by * w.z;
     return w;
 }
 
-/* f cos / pdf, where F cancels: of light that crosses G2 times this, and of light that stays; k.wo.z of a sheet
- * is above. */
-ASP_FN asp_real crossing_weight(const case_of *k, asp_real scale)
+/* f cos / pdf, where F cancels: of light that crosses G2 times this, and of light that stays. */
+ASP_FN asp_real crossing_weight(asp_real sigma_i, asp_real over_cosine, asp_real scale)
 {
-    return aspi_finite(k->sigma_i / k->wi.z) * scale;
+    return aspi_finite(sigma_i * over_cosine) * scale;
 }
 
-ASP_FN asp_real staying_weight(const asp_shape *shape, const case_of *k, asp_real sigma_o, int mask)
+/* What crosses is scaled so, from 1/eta. */
+ASP_FN asp_real crossing_scale(const asp_mat *mat, asp_real inverse)
 {
-    return k->sigma_i * aspi_abs(k->wo.z) * joint_reflected(shape, k, sigma_o, mask);
+    return aspi_crossing_scales(mat->transport, mat->a.r) ? inverse * inverse : R(1.0);
 }
 
-/* A visible normal, then reflection or refraction by F. */
-ASP_FN void sample_as(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2, asp_real u3, int thin, int mask,
-                      asp_sampled *out)
+ASP_FN asp_real staying_weight(const asp_shape *shape, asp_v3 wi, asp_v3 wo, asp_real sigma_i, asp_real sigma_o,
+                               asp_real mz, asp_real c, int mask)
+{
+    return sigma_i * wo.z * joint_reflected(shape, wi, wo, sigma_i, sigma_o, mz, c, mask);
+}
+
+/* Seen edge-on or from nowhere. */
+ASP_FN asp_sampled nothing_of(asp_v3 wi, asp_real nothing)
+{
+    asp_sampled out;
+    out.wo = aspi_turned(wi, R(-1.0), 0);
+    out.pdf = out.weight.r = out.weight.g = out.weight.b = nothing;
+    return out;
+}
+
+/* A visible normal, then reflection or refraction by F. What single scattering loses, light into the surface
+ * again, has density and weight 0. */
+ASP_FN asp_sampled sample_as(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3, int mask)
 {
     const asp_shape *shape = &mat->ndf;
-    asp_real sign = wi->z < R(0.0) ? R(-1.0) : R(1.0), index = mat->c.r, inverse = R(1.0) / mat->c.r;
-    asp_real nothing = (wi->x + wi->y + wi->z) * R(0.0), weight;
-    asp_seen facet;
-    asp_v3 v = aspi_turned(*wi, sign, thin), wo;
-    case_of k;
-    out->pdf = nothing;
-    out->weight.r = out->weight.g = out->weight.b = nothing;
-    if (v.z <= R(0.0) || nothing != R(0.0)) {
-        out->wo = aspi_turned(*wi, R(-1.0), 0);
-        return;
-    }
-    ASPI_OPS(shape).facet(shape, v.x, v.y, v.z, u1, u2, &facet);
-    k = bend(v, aspi_vector(facet.m_x, facet.m_y, facet.m_z), index_of(sign, index, inverse, thin),
-             index_of(sign, inverse, index, thin), u3, thin);
-    wo = k.wo;
-    if (k.refracts && thin)
-        wo.z = -wo.z;
-    out->wo = aspi_turned(lengthened(wo), sign, thin);
-    if (k.refracts ? wo.z >= R(0.0) : wo.z <= R(0.0))
-        return; /* into the surface again: single scattering loses this light */
-    k.sigma_i = facet.sigma_i;
-    if (thin)
-        k.wo.z = aspi_abs(wo.z); /* as make_case does */
-    out->pdf = facet_density(&k, facet.density, thin);
-    if (out->pdf <= R(0.0))
-        return;
-    if (k.refracts && !thin) {
-        /* first what need not be kept while sigma is called */
-        asp_real a = area_i(shape, &k, mask), scale = aspi_crossing_scale(k.eta, aspi_crossing_scales(mat->transport, mat->a.r));
-        asp_real by = crossing_weight(&k, scale);
-        weight = aspi_sigma_of(shape, aspi_turned(k.wo, R(-1.0), 0));
-        weight = refracted_masking(shape, &k, a, weight, mask) * by;
+    asp_real sign = wi.z < R(0.0) ? R(-1.0) : R(1.0), index = mat->c.r, inverse = R(1.0) / mat->c.r;
+    asp_real over = index_of(sign, inverse, index), nothing = aspi_abs((wi.x + wi.y + wi.z) * R(0.0));
+    asp_real weight, up, scale;
+    asp_v3 v = aspi_turned(wi, sign, 0), wo;
+    asp_split_ray s;
+    asp_sampled out;
+    if (v.z <= R(0.0) || nothing != R(0.0))
+        return nothing_of(wi, nothing);
+    ASPI_OPS(shape).refract(shape, v.x, v.y, v.z, u1, u2, u3, index_of(sign, index, inverse), over, &s);
+    wo = aspi_vector(s.wo_x, s.wo_y, s.wo_z);
+    scale = (mask & 15) == ASP_MASK_V_CAVITY ? aspi_sqrt(s.q) : R(0.0);
+    if (u3 >= s.F) {
+        asp_real over_i = inverse_of(v.z), a = area_over(shape, v, s.sigma_i, over_i, mask), b;
+        up = -wo.z;
+        b = area_over(shape, aspi_turned(wo, R(-1.0), 0), s.sigma_o, inverse_of(up), mask);
+        weight = crossing_weight(s.sigma_i, over_i, crossing_scale(mat, over))
+               * refracted_masking(a, b, s.m_z * scale, v.z, up, s.wi_m * scale, over * s.wo_m * scale, mask);
     } else {
-        weight = staying_weight(shape, &k, aspi_sigma_of(shape, k.wo), mask);
+        up = wo.z;
+        weight = staying_weight(shape, v, wo, s.sigma_i, s.sigma_o, s.m_z * scale, s.wi_m * scale, mask);
     }
-    out->weight.r = out->weight.g = out->weight.b = weight;
+    out.wo = lengthened(wo, sign);
+    out.pdf = up <= R(0.0) ? R(0.0) : s.pdf;
+    weight = out.pdf <= R(0.0) ? R(0.0) : weight;
+    out.weight.r = out.weight.g = out.weight.b = weight;
+    return out;
 }
 
-ASP_CLONES_SINGLE static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2,
-                                          asp_real u3, asp_sampled *out)
+/* A sheet: what passes leaves in the mirror image of what is reflected. */
+static asp_sampled sample_thin(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
 {
-    if (mat->c.r == R(1.0)) {
-        /* nothing is there: the light goes on */
-        out->pdf = (wi->x + wi->y + wi->z) * R(0.0);
-        out->wo = aspi_turned(*wi, R(-1.0), 0);
-        out->weight.r = out->weight.g = out->weight.b = R(1.0) + out->pdf;
-    } else if (mat->a.r > R(0.0)) {
-        sample_as(mat, wi, u1, u2, u3, 1, mat->mask, out);
-    } else if (mat->mask == 0) {
-        sample_as(mat, wi, u1, u2, u3, 0, 0, out); /* constants spare the default the others' arithmetic */
-    } else {
-        sample_as(mat, wi, u1, u2, u3, 0, mat->mask, out);
-    }
+    const asp_shape *shape = &mat->ndf;
+    asp_real sign = wi.z < R(0.0) ? R(-1.0) : R(1.0), nothing = aspi_abs((wi.x + wi.y + wi.z) * R(0.0));
+    asp_real weight, c, F, share;
+    asp_v3 v = aspi_turned(wi, sign, 1), wo;
+    asp_mirrored s;
+    asp_sampled out;
+    if (v.z <= R(0.0) || nothing != R(0.0))
+        return nothing_of(wi, nothing);
+    ASPI_OPS(shape).reflect(shape, v.x, v.y, v.z, u1, u2, &s);
+    c = aspi_sqrt(aspi_unit_cosine(s.cosine2));
+    F = sheet(aspi_fresnel_dielectric(c, mat->c.r), 1);
+    share = u3 >= F ? R(1.0) - F : F;
+    wo = aspi_vector(s.wo_x, s.wo_y, s.wo_z);
+    weight = staying_weight(shape, v, wo, s.sigma_i, s.sigma_o, aspi_sqrt(aspi_above(s.m_z2)), c, mat->mask);
+    out.pdf = wo.z <= R(0.0) ? R(0.0) : share * s.pdf;
+    weight = out.pdf <= R(0.0) ? R(0.0) : weight;
+    out.wo = aspi_turned(lengthened(wo, R(1.0)), u3 >= F ? -sign : sign, 1);
+    out.weight.r = out.weight.g = out.weight.b = weight;
+    return out;
+}
+
+ASP_CLONES_SINGLE static asp_sampled bsdf_sample(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2,
+                                                 asp_real u3)
+{
+    asp_sampled out;
+    /* constants spare the default the others' arithmetic */
+    if (mat->a.r > R(0.0) && mat->c.r != R(1.0))
+        return sample_thin(mat, wi, u1, u2, u3);
+    if (mat->c.r != R(1.0))
+        return mat->mask == 0 ? sample_as(mat, wi, u1, u2, u3, 0) : sample_as(mat, wi, u1, u2, u3, mat->mask);
+    /* nothing is there: the light goes on */
+    out.pdf = (wi.x + wi.y + wi.z) * R(0.0);
+    out.wo = aspi_turned(wi, R(-1.0), 0);
+    out.weight.r = out.weight.g = out.weight.b = R(1.0) + out.pdf;
+    return out;
 }
 
 /* beta of a block whose elements with far[i] != 0 matter and are not near: those are collected. */
@@ -408,81 +430,60 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
     const asp_shape *shape = &mat->ndf;
     const asp_real *wx = wi[0], *wy = wi[1], *wz = wi[2], *u3 = u[2];
     asp_real *px = wo[0], *py = wo[1], *pz = wo[2], *r = weight[0], *g = weight[1], *b = weight[2];
-    asp_real vx[ASP_BLOCK], vy[ASP_BLOCK], vz[ASP_BLOCK], mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK];
-    asp_real ox[ASP_BLOCK], oy[ASP_BLOCK], oz[ASP_BLOCK], bx[ASP_BLOCK], by[ASP_BLOCK], bz[ASP_BLOCK];
-    asp_real si[ASP_BLOCK], so[ASP_BLOCK], D[ASP_BLOCK], c[ASP_BLOCK], F[ASP_BLOCK], wm[ASP_BLOCK];
-    asp_real G2[ASP_BLOCK];
+    asp_real vx[ASP_BLOCK], vy[ASP_BLOCK], vz[ASP_BLOCK], ox[ASP_BLOCK], oy[ASP_BLOCK], oz[ASP_BLOCK];
+    asp_real si[ASP_BLOCK], so[ASP_BLOCK], p[ASP_BLOCK], F[ASP_BLOCK], eta[ASP_BLOCK], over[ASP_BLOCK];
+    asp_real A[ASP_BLOCK], B[ASP_BLOCK], G2[ASP_BLOCK];
     int far[ASP_BLOCK];
     asp_real index = mat->c.r, inverse = R(1.0) / mat->c.r;
-    int denser = aspi_crossing_scales(mat->transport, mat->a.r);
+    asp_real above = crossing_scale(mat, inverse), below = crossing_scale(mat, index);
+    asp_split_rays out;
     size_t i;
     if (mat->a.r > R(0.0) || index == R(1.0) || mat->mask != 0 || !n)
         return 0;
+    ASP_IN_PLACE
     for (i = 0; i < n; i++) {
         asp_v3 v = aspi_turned(aspi_vector(wx[i], wy[i], wz[i]), wz[i] < R(0.0) ? R(-1.0) : R(1.0), 0);
         vx[i] = v.x;
         vy[i] = v.y;
         vz[i] = v.z;
+        eta[i] = index_of(wz[i], index, inverse);
+        over[i] = index_of(wz[i], inverse, index);
     }
-    ASPI_OPS(shape).visible_n(shape, n, vx, vy, vz, u[0], u[1], mx, my, mz);
-    ASPI_OPS(shape).sigma_n(shape, n, R(1.0), vx, vy, vz, si);
-    ASPI_OPS(shape).density_n(shape, n, mx, my, mz, D);
+    out.wo_x = ox;
+    out.wo_y = oy;
+    out.wo_z = oz;
+    out.F = F;
+    out.pdf = p;
+    out.sigma_i = si;
+    out.sigma_o = so;
+    ASPI_OPS(shape).refract_n(shape, n, vx, vy, vz, u[0], u[1], u3, eta, over, &out);
     for (i = 0; i < n; i++) {
-        asp_real eta = index_of(wz[i], index, inverse, 0), over = index_of(wz[i], inverse, index, 0), sign;
-        case_of k = bend(aspi_vector(vx[i], vy[i], vz[i]), aspi_vector(mx[i], my[i], mz[i]), eta, over, u3[i], 0);
-        sign = k.refracts ? R(-1.0) : R(1.0);
-        c[i] = k.c;
-        F[i] = k.F;
-        wm[i] = k.wm;
-        ox[i] = k.wo.x;
-        oy[i] = k.wo.y;
-        oz[i] = k.wo.z;
-        bx[i] = sign * k.wo.x;
-        by[i] = sign * k.wo.y;
-        bz[i] = sign * k.wo.z;
-    }
-    ASPI_OPS(shape).sigma_n(shape, n, R(1.0), bx, by, bz, so);
-    for (i = 0; i < n; i++) {
-        case_of k;
-        asp_real a, o;
-        k.wi = aspi_vector(vx[i], vy[i], vz[i]);
-        k.sigma_i = si[i];
-        a = area_i(shape, &k, 0);
-        o = area_o(shape, aspi_vector(ox[i], oy[i], oz[i]), so[i], 0);
-        bx[i] = a;
-        by[i] = o;
+        asp_real sign = u3[i] >= F[i] ? R(-1.0) : R(1.0);
+        asp_v3 v = aspi_vector(vx[i], vy[i], vz[i]), up = aspi_vector(sign * ox[i], sign * oy[i], sign * oz[i]);
+        asp_real a = area_over(shape, v, si[i], inverse_of(v.z), 0);
+        asp_real o = area_over(shape, up, so[i], inverse_of(up.z), 0);
+        A[i] = a;
+        B[i] = o;
         far[i] = (u3[i] >= F[i]) & !is_near(a, o);
         G2[i] = beta_near(a, o);
     }
-    beta_n(n, bx, by, far, G2);
+    beta_n(n, A, B, far, G2);
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
-        asp_real nothing = (wx[i] + wy[i] + wz[i]) * R(0.0), sign = wz[i] < R(0.0) ? R(-1.0) : R(1.0), p, w, stay;
-        case_of k;
-        asp_v3 out;
-        int stop, lost;
-        k.wi = aspi_vector(vx[i], vy[i], vz[i]);
-        k.m = aspi_vector(mx[i], my[i], mz[i]);
-        k.wo = aspi_vector(ox[i], oy[i], oz[i]);
-        k.eta = index_of(wz[i], index, inverse, 0);
-        k.c = c[i];
-        k.F = F[i];
-        k.wm = wm[i];
-        k.refracts = u3[i] >= F[i];
-        k.sigma_i = si[i];
-        out = lengthened(k.wo);
-        p = facet_density(&k, D[i], 0);
-        w = G2[i] * crossing_weight(&k, aspi_crossing_scale(k.eta, denser));
-        stay = staying_weight(shape, &k, so[i], 0);
-        w = k.refracts ? w : stay;
-        stop = (k.wi.z <= R(0.0)) | (nothing != R(0.0));
-        lost = stop | (bz[i] <= R(0.0));
-        p = aspi_select(lost, nothing, p);
-        w = aspi_select(lost | (p <= R(0.0)), nothing, w);
-        px[i] = aspi_select(stop, -wx[i], sign * out.x);
-        py[i] = aspi_select(stop, -wy[i], sign * out.y);
-        pz[i] = aspi_select(stop, -wz[i], sign * out.z);
-        pdf[i] = p;
+        asp_real nothing = aspi_abs((wx[i] + wy[i] + wz[i]) * R(0.0)), sign = wz[i] < R(0.0) ? R(-1.0) : R(1.0);
+        asp_real w, stay, d;
+        asp_v3 v = aspi_vector(vx[i], vy[i], vz[i]), wo = aspi_vector(ox[i], oy[i], oz[i]), to = lengthened(wo, sign);
+        int crosses = u3[i] >= F[i], stop = (v.z <= R(0.0)) | (nothing != R(0.0));
+        int lost = stop | (aspi_select(crosses, -wo.z, wo.z) <= R(0.0));
+        d = aspi_select(lost, nothing, p[i]);
+        w = crossing_weight(si[i], inverse_of(v.z), index_of(wz[i], above, below)) * G2[i];
+        stay = staying_weight(shape, v, wo, si[i], so[i], R(0.0), R(0.0), 0);
+        w = aspi_select(crosses, w, stay);
+        w = aspi_select(lost | (d <= R(0.0)), nothing, w);
+        px[i] = aspi_select(stop, -wx[i], to.x);
+        py[i] = aspi_select(stop, -wy[i], to.y);
+        pz[i] = aspi_select(stop, -wz[i], to.z);
+        pdf[i] = d;
         r[i] = w;
         g[i] = w;
         b[i] = w;

@@ -185,15 +185,16 @@ static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
     return wi->z <= R(0.0) ? nothing : p + nothing;
 }
 
-static void bsdf_sample(const asp_mat *mat, const asp_v3 *wi, asp_real u1, asp_real u2, asp_real u3,
-                        asp_sampled *out)
+static asp_sampled bsdf_sample(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
 {
+    asp_sampled out;
     (void)u3;
-    out->wo = aspi_cosine_lobe(*wi, u1, u2);
-    out->pdf = bsdf_pdf(mat, wi, &out->wo);
-    bsdf_eval(mat, wi, &out->wo, 0, &out->weight);
-    out->weight.r = out->weight.r * R(ASP_PI);
-    out->weight.g = out->weight.g * R(ASP_PI);
-    out->weight.b = out->weight.b * R(ASP_PI);
+    out.wo = aspi_cosine_lobe(wi, u1, u2);
+    out.pdf = bsdf_pdf(mat, &wi, &out.wo);
+    bsdf_eval(mat, &wi, &out.wo, 0, &out.weight);
+    out.weight.r = out.weight.r * R(ASP_PI);
+    out.weight.g = out.weight.g * R(ASP_PI);
+    out.weight.b = out.weight.b * R(ASP_PI);
+    return out;
 }
 #endif

@@ -26,7 +26,6 @@
 #define lit_part ASP_NAME(lit_part)
 #define sample_pure ASP_NAME(sample_pure)
 #define sample_mixed ASP_NAME(sample_mixed)
-#define sample_own ASP_NAME(sample_own)
 #define sample_facets ASP_NAME(sample_facets)
 #define sample_value ASP_NAME(sample_value)
 #define reflected ASP_NAME(reflected)
@@ -177,14 +176,7 @@ static asp_sampled sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_
     return out;
 }
 
-/* The compiler must not take these in: a copy of what was just written in parts would stall. */
-ASPI_APART static asp_sampled sample_own(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
-{
-    asp_sampled out;
-    mat->model->ASPI_CALL(sample)(mat, &wi, u1, u2, u3, &out);
-    return out;
-}
-
+/* The compiler must not take this in: a copy of what was just written in parts would stall. */
 ASPI_APART static asp_sampled sample_facets(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
 {
     if (mat->model->mixed)
@@ -195,14 +187,14 @@ ASPI_APART static asp_sampled sample_facets(const asp_mat *mat, asp_v3 wi, asp_r
 asp_sampled ASPI_CALL(asp_sample_lobe)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
 {
     if (mat->model->ASPI_CALL(sample))
-        return sample_own(mat, wi, u1, u2, u3);
+        return mat->model->ASPI_CALL(sample)(mat, wi, u1, u2, u3);
     return mat->model->ASPI_CALL(value) ? sample_facets(mat, wi, u1, u2) : sample_pure(mat, wi, u1, u2);
 }
 
 asp_sampled ASPI_CALL(asp_sample)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
 {
     if (mat->model->ASPI_CALL(sample))
-        return sample_own(mat, wi, u1, u2, aspi_third_number(u1, u2));
+        return mat->model->ASPI_CALL(sample)(mat, wi, u1, u2, aspi_third_number(u1, u2));
     return mat->model->ASPI_CALL(value) ? sample_facets(mat, wi, u1, u2) : sample_pure(mat, wi, u1, u2);
 }
 #endif
