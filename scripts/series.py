@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Coefficients of float32's logarithm and of its sine and cosine in include/asperity/elementary.h, and of the
-gamma functions in src/bsdf/dielectric.c.
+gamma functions in src/bsdf/beta.h.
 
 log(1 + f) = f - f^2/2 + f^3 q(f), 1 + f within [sqrt(1/2), sqrt(2)];
 sin(pi x/2) = x + x (1 - x^2) g(x^2), cos(pi x/2) = (1 - x^2)(1 - x^2 r(x^2)), x within [-1, 1].

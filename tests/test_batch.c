@@ -1,4 +1,4 @@
-/* test_batch.c - asp_sample_n gives element by element what asp_sample gives, in place too
+/* test_batch.c - batches give element by element what single calls give, samples in place too
  *
  * Read three times: this head, then the body in each precision. */
 #ifndef REAL
@@ -32,7 +32,8 @@ static double uniform(void)
 #define IN asp_cvec3s
 #define OUT asp_vec3s
 #define RGB asp_rgbs
-#define BATCH asp_sample_n
+#define ONE asp_rgb
+#define BATCH(x) x##_n
 #include "test_batch.c"
 #define REAL float
 #define NAME(x) x##f
@@ -43,7 +44,8 @@ static double uniform(void)
 #define IN asp_cvec3sf
 #define OUT asp_vec3sf
 #define RGB asp_rgbsf
-#define BATCH asp_sample_nf
+#define ONE asp_rgbf
+#define BATCH(x) x##_nf
 #include "test_batch.c"
 
 int main(void)
@@ -72,6 +74,8 @@ int main(void)
         narrow = asp_material_narrow(&mat);
         check_64(specs[i], &mat);
         check_32(specs[i], &narrow);
+        check_values_64(specs[i], &mat);
+        check_values_32(specs[i], &narrow);
     }
     printf("%d passed, %d failed\n", passed, failed);
     return failed != 0;
@@ -104,7 +108,7 @@ static void TEST(check)(const char *spec, const MATERIAL *mat)
     RGB rgb = { o[4], o[5], o[6] }, weight = { u[0], u[1], o[6] };
     int i, k, differ = 0, moved = 0, lit = 0;
     TEST(fill)(wi, u);
-    BATCH(mat, N, in, u[0], u[1], out, o[3], rgb);
+    BATCH(asp_sample)(mat, N, in, u[0], u[1], out, o[3], rgb);
     for (i = 0; i < N; i++) {
         SAMPLE s = NAME(asp_sample)(mat, (VEC3){ wi[0][i], wi[1][i], wi[2][i] }, u[0][i], u[1][i]);
         REAL one[7] = { s.wo.x, s.wo.y, s.wo.z, s.pdf, s.weight.r, s.weight.g, s.weight.b };
@@ -112,7 +116,7 @@ static void TEST(check)(const char *spec, const MATERIAL *mat)
             differ += !TEST(same)(one[k], o[k][i]);
         lit += s.weight.r > 0;
     }
-    BATCH(mat, N, in, u[0], u[1], back, o[3], weight);
+    BATCH(asp_sample)(mat, N, in, u[0], u[1], back, o[3], weight);
     for (i = 0; i < N; i++) {
         for (k = 0; k < 3; k++)
             moved += !TEST(same)(wi[k][i], o[k][i]);
@@ -126,8 +130,49 @@ static void TEST(check)(const char *spec, const MATERIAL *mat)
         passed++;
 }
 
+/* eval, eval_cos and pdf of pairs, every third of which the material has made. */
+static void TEST(check_values)(const char *spec, const MATERIAL *mat)
+{
+    static REAL wi[3][N], wo[3][N], u[2][N], o[7][N];
+    IN in = { wi[0], wi[1], wi[2] }, to = { wo[0], wo[1], wo[2] };
+    RGB f = { o[0], o[1], o[2] }, f_cos = { o[3], o[4], o[5] }, back = { wi[0], wi[1], wi[2] };
+    int i, k, differ = 0, moved = 0, lit = 0, through = 0;
+    TEST(fill)(wo, u);
+    TEST(fill)(wi, u);
+    for (i = 0; i < N; i += 3) {
+        SAMPLE s = NAME(asp_sample)(mat, (VEC3){ wi[0][i], wi[1][i], wi[2][i] }, u[0][i], u[1][i]);
+        wo[0][i] = s.wo.x;
+        wo[1][i] = s.wo.y;
+        wo[2][i] = s.wo.z;
+    }
+    BATCH(asp_eval)(mat, N, in, to, f);
+    BATCH(asp_eval_cos)(mat, N, in, to, f_cos);
+    BATCH(asp_pdf)(mat, N, in, to, o[6]);
+    for (i = 0; i < N; i++) {
+        VEC3 a = { wi[0][i], wi[1][i], wi[2][i] }, b = { wo[0][i], wo[1][i], wo[2][i] };
+        ONE e = NAME(asp_eval)(mat, a, b), c = NAME(asp_eval_cos)(mat, a, b);
+        REAL one[7] = { e.r, e.g, e.b, c.r, c.g, c.b, NAME(asp_pdf)(mat, a, b) };
+        for (k = 0; k < 7; k++)
+            differ += !TEST(same)(one[k], o[k][i]);
+        lit += e.r > 0;
+        through += e.r > 0 && a.z * b.z < 0;
+    }
+    BATCH(asp_eval)(mat, N, in, to, back);
+    for (i = 0; i < N; i++)
+        for (k = 0; k < 3; k++)
+            moved += !TEST(same)(wi[k][i], o[k][i]);
+    printf("%s  float%d %s: %d pairs with light, %d of them through it; %d numbers differ, %d in place\n",
+           differ || moved || lit < N / 10 ? "FAILED" : "ok    ", (int)(8 * sizeof(REAL)), spec, lit, through, differ,
+           moved);
+    if (differ || moved || lit < N / 10)
+        failed++;
+    else
+        passed++;
+}
+
 #undef REAL
 #undef NAME
+#undef ONE
 #undef TEST
 #undef MATERIAL
 #undef SAMPLE

@@ -62,8 +62,14 @@ struct asp_bsdf {
     float  (*pdff)(const asp_materialf *mat, const asp_vec3f *wi, const asp_vec3f *wo);
     asp_bsdf_sample (*sample)(const asp_material *mat, asp_vec3 wi, double u1, double u2, double u3);
     asp_bsdf_samplef (*samplef)(const asp_materialf *mat, asp_vec3f wi, float u1, float u2, float u3);
-    /* A block of the same, whose outputs may be inputs; u holds u1, u2, u3. Returns 0 where it has to be done
-     * one by one; may be NULL. */
+    /* Blocks of the same, of eval one channel, as all are alike; the outputs of samples may be inputs, and u holds
+     * u1, u2, u3. They return 0 where it has to be done one by one; may be NULL. */
+    int (*eval_n)(const asp_material *mat, size_t n, const double *const wi[3], const double *const wo[3], int cosine,
+                  double *f);
+    int (*eval_nf)(const asp_materialf *mat, size_t n, const float *const wi[3], const float *const wo[3], int cosine,
+                   float *f);
+    int (*pdf_n)(const asp_material *mat, size_t n, const double *const wi[3], const double *const wo[3], double *pdf);
+    int (*pdf_nf)(const asp_materialf *mat, size_t n, const float *const wi[3], const float *const wo[3], float *pdf);
     int (*sample_n)(const asp_material *mat, size_t n, const double *const wi[3], const double *const u[3],
                     double *const wo[3], double *pdf, double *const weight[3]);
     int (*sample_nf)(const asp_materialf *mat, size_t n, const float *const wi[3], const float *const u[3],
@@ -107,14 +113,16 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
     { "transport", "radiance (default) or importance: whether what crosses is scaled by 1/eta^2" }
 
 /* The formulas of a record, in the order of struct asp_bsdf. */
+#define ASPI_BSDF_NO_BLOCKS NULL, NULL, NULL, NULL, NULL, NULL
 #define ASPI_BSDF_FACETS NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, \
-    NULL, NULL
+    ASPI_BSDF_NO_BLOCKS
 #define ASPI_BSDF_OPS(n) n##_value_1_64, n##_value_1_32, n##_value_n_64, n##_value_n_32, \
     n##_share_1_64, n##_share_1_32, n##_share_n_64, n##_share_n_32, NULL, NULL, NULL, NULL, NULL, NULL, \
-    NULL, NULL
+    ASPI_BSDF_NO_BLOCKS
 #define ASPI_BSDF_CALLS(n) NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, \
     n##_eval_64, n##_eval_32, n##_pdf_64, n##_pdf_32, n##_sample_64, n##_sample_32
-#define ASPI_BSDF_OWN(n) ASPI_BSDF_CALLS(n), NULL, NULL
-#define ASPI_BSDF_OWN_BLOCKS(n) ASPI_BSDF_CALLS(n), n##_sample_n_64, n##_sample_n_32
+#define ASPI_BSDF_OWN(n) ASPI_BSDF_CALLS(n), ASPI_BSDF_NO_BLOCKS
+#define ASPI_BSDF_OWN_BLOCKS(n) ASPI_BSDF_CALLS(n), n##_eval_n_64, n##_eval_n_32, \
+    n##_pdf_n_64, n##_pdf_n_32, n##_sample_n_64, n##_sample_n_32
 
 #endif

@@ -9,6 +9,8 @@
 #define bsdf_share_n ASP_NDF_NAME(_share_n)
 #define bsdf_eval ASP_NDF_NAME(_eval)
 #define bsdf_pdf ASP_NDF_NAME(_pdf)
+#define bsdf_eval_n ASP_NDF_NAME(_eval_n)
+#define bsdf_pdf_n ASP_NDF_NAME(_pdf_n)
 #define bsdf_sample ASP_NDF_NAME(_sample)
 #define bsdf_sample_n ASP_NDF_NAME(_sample_n)
 #endif

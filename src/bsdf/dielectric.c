@@ -46,6 +46,7 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 
 #else
 #include "asperity/elementary.h"
+#include "bsdf/beta.h"
 #include "bsdf/bsdf_number.h"
 #include "bsdf/ops.h"
 #include "bsdf/reflection.h"
@@ -55,14 +56,15 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define DIELECTRIC_NAMES
 #define case_of ASP_NDF_NAME(_case)
 #define make_case ASP_NDF_NAME(_make)
+#define case_at ASP_NDF_NAME(_case_at)
+#define lit ASP_NDF_NAME(_lit)
+#define staying_value ASP_NDF_NAME(_staying_value)
+#define crossing_value ASP_NDF_NAME(_crossing_value)
+#define plain ASP_NDF_NAME(_plain)
+#define join_n ASP_NDF_NAME(_join_n)
+#define joined ASP_NDF_NAME(_joined)
+#define joined_case ASP_NDF_NAME(_joined_case)
 #define refracted_masking ASP_NDF_NAME(_refracted_masking)
-#define stirling ASP_NDF_NAME(_stirling)
-#define beta ASP_NDF_NAME(_beta)
-#define near_terms ASP_NDF_NAME(_near_terms)
-#define near_series ASP_NDF_NAME(_near_series)
-#define beta_near ASP_NDF_NAME(_beta_near)
-#define beta_near_1 ASP_NDF_NAME(_beta_near_1)
-#define is_near ASP_NDF_NAME(_is_near)
 #define sheet ASP_NDF_NAME(_sheet)
 #define area_over ASP_NDF_NAME(_area_over)
 #define inverse_of ASP_NDF_NAME(_inverse_of)
@@ -76,7 +78,6 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define crossing_scale ASP_NDF_NAME(_crossing_scale)
 #define crossing_weight ASP_NDF_NAME(_crossing_weight)
 #define staying_weight ASP_NDF_NAME(_staying_weight)
-#define beta_n ASP_NDF_NAME(_beta_n)
 #endif
 
 /* A pair of directions with wi above: which facet joins them, and F there. */
@@ -90,122 +91,42 @@ typedef struct case_of {
 /* F with the reflections inside a sheet summed up. */
 ASP_FN asp_real sheet(asp_real F, int thin) { return thin ? R(2.0) * F / (R(1.0) + F) : F; }
 
-ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
+/* wi above, seen from its side. */
+ASP_FN case_of case_at(asp_v3 wi, asp_v3 wo, asp_real eta, int thin)
 {
-    int thin = mat->a.r > R(0.0);
-    asp_real sign = wi.z < R(0.0) ? R(-1.0) : R(1.0);
     case_of k;
-    k.eta = sign < R(0.0) && !thin ? R(1.0) / mat->c.r : mat->c.r;
-    k.wi = aspi_turned(wi, sign, thin);
-    k.wo = aspi_turned(wo, sign, thin);
-    k.refracts = k.wo.z < R(0.0);
-    if (thin && k.refracts) {
-        k.wo.z = -k.wo.z;
+    k.wi = wi;
+    k.wo = wo;
+    k.eta = eta;
+    k.refracts = wo.z < R(0.0);
+    k.wo.z = thin ? aspi_abs(wo.z) : wo.z;
+    if (k.refracts && !thin)
+        k.m = aspi_bent_half(k.wi, k.wo, eta);
+    else
         k.m = aspi_half_vector(k.wi, k.wo);
-    } else {
-        k.m = k.refracts ? aspi_bent_half(k.wi, k.wo, k.eta) : aspi_half_vector(k.wi, k.wo);
-    }
     k.c = aspi_dot(k.wi, k.m);
     k.wm = aspi_dot(k.wo, k.m);
-    k.F = sheet(aspi_fresnel_dielectric(k.c, k.eta), thin);
-    k.dark = !(k.c > R(0.0) && k.m.z > ASP_FLAT && k.wi.z > R(0.0) && k.wo.z != R(0.0))
-          || mat->c.r == R(1.0);
-    k.sigma_i = aspi_sigma_of(&mat->ndf, k.wi);
+    k.F = sheet(aspi_fresnel_dielectric(k.c, eta), thin);
     return k;
 }
 
-/* Stirling's series, the logarithm of Gamma(z) over sqrt(2 pi/z) (z/e)^z, from 1/z; z is at least 3 in
- * float32, 9 in float64. */
-#define BETA_STEPS (ASP_PRECISION == 64 ? 8 : 2)
-ASP_FN asp_real stirling(asp_real i)
+ASP_FN int lit(const case_of *k, int thin)
 {
-    asp_real i2 = i * i, s = R(-1.0 / 1680.0);
-#if ASP_PRECISION == 64
-    s = R(1.0 / 1188.0) + i2 * (R(-691.0 / 360360.0) + i2 * R(1.0 / 156.0));
-    s = R(-1.0 / 1680.0) + i2 * s;
-#endif
-    s = R(1.0 / 1260.0) + i2 * s;
-    s = R(-1.0 / 360.0) + i2 * s;
-    return i * (R(1.0 / 12.0) + i2 * s);
+    return (k->c > R(0.0)) & (k->m.z > ASP_FLAT) & (k->wi.z > R(0.0)) & (k->wo.z != R(0.0))
+         & !(k->refracts & !thin & (k->wm >= R(0.0)));
 }
 
-/* Euler's B(a, b), a and b at least 1: brought to a + n, b + n by the recurrence. With x = B/A <= 1 the power is
- * exp(-((A + B) log(1 + x) - B log x)), whose error by that of x vanishes. Relative error 1e-11 and 5e-7 per
- * 1 + |ln B|; float32 answers 0 below about 1e-20. */
-ASP_FN asp_real beta(asp_real p, asp_real q)
+/* The index of the other side over that of the side of `sign`. */
+ASP_FN asp_real index_of(asp_real sign, asp_real eta, asp_real inverse) { return sign < R(0.0) ? inverse : eta; }
+
+ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 {
-    asp_real a = aspi_max(p, q), b = aspi_min(p, q);
-    int low = a + b < R(1e6);
-    asp_real over = R(1.0), under = R(1.0), A, B, S, one, x, e;
-    int i;
-    a = low ? a : R(1.0);
-    b = low ? b : R(1.0);
-    A = a + R(BETA_STEPS);
-    B = b + R(BETA_STEPS);
-    S = A + B;
-    for (i = 0; i < BETA_STEPS; i++) {
-        asp_real s = (a + b) + R(2 * i);
-        over = over * (s * (s + R(1.0)));
-        under = under * ((a + R(i)) * (b + R(i)));
-    }
-    one = R(1.0) / (A * B * S);
-    x = B * (B * S * one);
-    e = (stirling(B * S * one) + stirling(A * S * one) - stirling(A * B * one))
-      - (S * aspi_log1p(x) - B * aspi_log(x));
-    x = over / under * aspi_sqrt(R(2.0 * ASP_PI) * (S * S * one)) * aspi_exp(e);
-    return low ? x : R(0.0);
-}
-
-/* The same for a and b within [1, 2], float32: Gamma(a) and Gamma(b) and 1/Gamma(a + b) as polynomials
- * (scripts/series.py), relative error 4e-7. */
-ASP_FN int is_near(asp_real a, asp_real b) { return ASP_PRECISION == 32 && aspi_max(a, b) <= R(2.0); }
-
-/* Of each power the coefficients of Gamma(3/2 + t), twice, and of 1/Gamma(3 + t). */
-static const asp_real near_terms[10][4] = {
-    { R(0.8862269557), R(0.8862269557), R(0.4999999876), R(0.0) },
-    { R(0.03233828362), R(0.03233828362), R(-0.4613921502), R(0.0) },
-    { R(0.4148074728), R(0.4148074728), R(0.1141498354), R(0.0) },
-    { R(-0.1072858207), R(-0.1072858207), R(0.03847059524), R(0.0) },
-    { R(0.1448331843), R(0.1448331843), R(-0.03151665695), R(0.0) },
-    { R(-0.07772028495), R(-0.07772028495), R(0.006935187604), R(0.0) },
-    { R(0.05657111942), R(0.05657111942), R(0.0005587637258), R(0.0) },
-    { R(-0.03625772053), R(-0.03625772053), R(-0.0006791526744), R(0.0) },
-    { R(0.03459742257), R(0.03459742257), R(0.0001414160983), R(0.0) },
-    { R(-0.02374981865), R(-0.02374981865), R(-1.148210216e-6), R(0.0) }
-};
-
-/* c[0] + c[1] t + ... + c[9] t^9, numbers or several at once. */
-#define NEAR_SERIES(t, t2, t4, c0, c1, c2, c3, c4, c5, c6, c7, c8, c9) \
-    (((c0 + c1 * t) + (c2 + c3 * t) * t2) + ((c4 + c5 * t) + (c6 + c7 * t) * t2) * t4 + (c8 + c9 * t) * (t4 * t4))
-#define NEAR_SERIES_OF(t, t2, t4, c) NEAR_SERIES(t, t2, t4, c(0), c(1), c(2), c(3), c(4), c(5), c(6), c(7), c(8), c(9))
-
-ASP_FN asp_real near_series(asp_real t, int j)
-{
-    asp_real t2 = t * t, t4 = t2 * t2;
-#define NEAR_TERM(i) near_terms[i][j]
-    return NEAR_SERIES_OF(t, t2, t4, NEAR_TERM);
-#undef NEAR_TERM
-}
-
-ASP_FN asp_real beta_near(asp_real a, asp_real b)
-{
-    return near_series(a - R(1.5), 0) * near_series(b - R(1.5), 1) * near_series(a + b - R(3.0), 2);
-}
-
-/* The same for a single pair, the three side by side. */
-ASP_FN asp_real beta_near_1(asp_real a, asp_real b)
-{
-#if defined(__GNUC__) && !defined(__CUDACC__) && !defined(__CUDA__)
-    typedef asp_real four __attribute__((vector_size(4 * sizeof(asp_real))));
-    four t = { a - R(1.5), b - R(1.5), a + b - R(3.0), R(0.0) }, t2 = t * t, t4 = t2 * t2, c[10];
-    memcpy(c, near_terms, sizeof c);
-#define NEAR_TERM(i) c[i]
-    t = NEAR_SERIES_OF(t, t2, t4, NEAR_TERM);
-#undef NEAR_TERM
-    return t[0] * t[1] * t[2];
-#else
-    return beta_near(a, b);
-#endif
+    int thin = mat->a.r > R(0.0);
+    asp_real sign = wi.z < R(0.0) ? R(-1.0) : R(1.0), eta = sign < R(0.0) && !thin ? R(1.0) / mat->c.r : mat->c.r;
+    case_of k = case_at(aspi_turned(wi, sign, thin), aspi_turned(wo, sign, thin), eta, thin);
+    k.dark = !lit(&k, thin) || mat->c.r == R(1.0);
+    k.sigma_i = aspi_sigma_of(&mat->ndf, k.wi);
+    return k;
 }
 
 ASP_FN asp_real inverse_of(asp_real cosine) { return R(1.0) / aspi_max(cosine, ASP_TINY); }
@@ -228,7 +149,7 @@ ASP_FN asp_real refracted_masking(asp_real a, asp_real b, asp_real mz, asp_real 
         asp_real open_o = aspi_min(R(1.0), R(2.0) * mz * co / aspi_max(c_o, ASP_SMALLEST));
         return aspi_max(open_i + open_o - R(1.0), R(0.0));
     }
-    return is_near(a, b) ? beta_near_1(a, b) : beta(a, b);
+    return aspi_beta_is_near(a, b) ? aspi_beta_near_1(a, b) : aspi_beta(a, b);
 }
 
 /* G2 / (ci co) of a reflection. */
@@ -239,27 +160,37 @@ ASP_FN asp_real joint_reflected(const asp_shape *shape, asp_v3 wi, asp_v3 wo, as
     return aspi_joint(wi.z, wo.z, si, so, mz, c, c, mask);
 }
 
+/* f of what stays on its side, by `share`, F or 1 - F, and by J = G2/(ci co); and of what crosses, times co. */
+ASP_FN asp_real staying_value(asp_real share, asp_real D, asp_real J)
+{
+    return share * aspi_finite(R(0.25) * D * J);
+}
+
+ASP_FN asp_real crossing_value(const case_of *k, asp_real D, asp_real G2, asp_real scale)
+{
+    return (R(1.0) - k->F) * aspi_finite(k->c * D * aspi_bent_density(k->c, k->wm, k->eta) * G2 / k->wi.z) * scale;
+}
+
 /* f times |cos_o|^cosine. */
 static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, asp_c3 *out)
 {
     case_of k = make_case(mat, *wi, *wo);
-    asp_real nothing = k.c * R(0.0), f = nothing, D, co = aspi_abs(wo->z);
+    asp_real f = k.c * R(0.0), D, so, co = aspi_abs(wo->z);
+    int mask = mat->mask, thin = mat->a.r > R(0.0);
     if (!k.dark) {
-        int thin = mat->a.r > R(0.0);
         D = aspi_density_of(&mat->ndf, k.m);
         if (!k.refracts || thin) {
-            asp_real so = aspi_sigma_of(&mat->ndf, k.wo);
-            asp_real share = k.refracts ? R(1.0) - k.F : k.F;
-            f = share * aspi_finite(R(0.25) * D * joint_reflected(&mat->ndf, k.wi, k.wo, k.sigma_i, so, k.m.z, k.c, mat->mask));
+            so = aspi_sigma_of(&mat->ndf, k.wo);
+            f = staying_value(k.refracts ? R(1.0) - k.F : k.F, D,
+                              joint_reflected(&mat->ndf, k.wi, k.wo, k.sigma_i, so, k.m.z, k.c, mask));
             f = cosine ? f * co : f;
-        } else if (k.wm < R(0.0)) {
+        } else {
             asp_v3 below = aspi_turned(k.wo, R(-1.0), 0);
-            asp_real so = aspi_sigma_of(&mat->ndf, below);
-            asp_real a = area_over(&mat->ndf, k.wi, k.sigma_i, inverse_of(k.wi.z), mat->mask);
-            asp_real b = area_over(&mat->ndf, below, so, inverse_of(co), mat->mask);
-            asp_real G2 = refracted_masking(a, b, k.m.z, k.wi.z, co, k.c, -k.wm, mat->mask);
-            f = (R(1.0) - k.F) * aspi_finite(k.c * D * aspi_bent_density(k.c, k.wm, k.eta) * G2 / k.wi.z)
-              * aspi_crossing_scale(k.eta, aspi_crossing_scales(mat->transport, mat->a.r));
+            asp_real a = area_over(&mat->ndf, k.wi, k.sigma_i, inverse_of(k.wi.z), mask), b;
+            so = aspi_sigma_of(&mat->ndf, below);
+            b = area_over(&mat->ndf, below, so, inverse_of(co), mask);
+            f = crossing_value(&k, D, refracted_masking(a, b, k.m.z, k.wi.z, co, k.c, -k.wm, mask),
+                               aspi_crossing_scale(k.eta, aspi_crossing_scales(mat->transport, mat->a.r)));
             f = cosine ? f : f / co;
         }
     }
@@ -281,13 +212,10 @@ static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
 {
     case_of k = make_case(mat, *wi, *wo);
     int thin = mat->a.r > R(0.0);
-    if (k.dark || (k.refracts && !thin && k.wm >= R(0.0)))
+    if (k.dark)
         return k.c * R(0.0);
     return facet_density(&k, aspi_density_of(&mat->ndf, k.m), thin);
 }
-
-/* The index of the other side over that of the side of `sign`. */
-ASP_FN asp_real index_of(asp_real sign, asp_real eta, asp_real inverse) { return sign < R(0.0) ? inverse : eta; }
 
 /* sign w of length 1: a step towards 1/|w| from 1, |w| is 1 to rounding. */
 ASP_FN asp_v3 lengthened(asp_v3 w, asp_real sign)
@@ -399,30 +327,117 @@ ASP_CLONES_SINGLE static asp_sampled bsdf_sample(const asp_mat *mat, asp_v3 wi, 
     return out;
 }
 
-/* beta of a block whose elements with far[i] != 0 matter and are not near: those are collected. */
-ASP_FN void beta_n(size_t n, const asp_real *ASP_RESTRICT a, const asp_real *ASP_RESTRICT b,
-                   const int *ASP_RESTRICT far, asp_real *ASP_RESTRICT out)
+/* Half spaces with the default masking, which blocks are for. */
+ASP_FN int plain(const asp_mat *mat) { return !(mat->a.r > R(0.0)) && mat->c.r != R(1.0) && mat->mask == 0; }
+
+/* A block of pairs: wi and wo turned up, the facets that join them, D and sigma. */
+typedef struct joined {
+    asp_real vx[ASP_BLOCK], vy[ASP_BLOCK], vz[ASP_BLOCK], ux[ASP_BLOCK], uy[ASP_BLOCK], uz[ASP_BLOCK];
+    asp_real mx[ASP_BLOCK], my[ASP_BLOCK], mz[ASP_BLOCK], c[ASP_BLOCK], wm[ASP_BLOCK], F[ASP_BLOCK], eta[ASP_BLOCK];
+    asp_real D[ASP_BLOCK], si[ASP_BLOCK], so[ASP_BLOCK], side[ASP_BLOCK];
+} joined;
+
+ASP_FN void join_n(const asp_mat *mat, size_t n, const asp_real *const wi[3], const asp_real *const wo[3], joined *j)
 {
-    asp_real x[ASP_BLOCK], y[ASP_BLOCK];
-    int place[ASP_BLOCK];
-    size_t i, count;
-    for (i = count = 0; i < n; i++) {
-        place[count] = (int)i;
-        count += far[i] != 0;
-    }
-    for (i = 0; i < count; i++) {
-        x[i] = a[place[i]];
-        y[i] = b[place[i]];
-    }
+    const asp_real *ix = wi[0], *iy = wi[1], *iz = wi[2], *ox = wo[0], *oy = wo[1], *oz = wo[2];
+    asp_real index = mat->c.r, inverse = R(1.0) / mat->c.r;
+    size_t i;
     ASP_IN_PLACE
-    for (i = 0; i < count; i++)
-        x[i] = beta(x[i], y[i]);
-    for (i = 0; i < count; i++)
-        out[place[i]] = x[i];
+    for (i = 0; i < n; i++) {
+        asp_real sign = iz[i] < R(0.0) ? R(-1.0) : R(1.0), eta = index_of(iz[i], index, inverse), up;
+        case_of k = case_at(aspi_turned(aspi_vector(ix[i], iy[i], iz[i]), sign, 0),
+                            aspi_turned(aspi_vector(ox[i], oy[i], oz[i]), sign, 0), eta, 0);
+        up = k.refracts ? R(-1.0) : R(1.0);
+        j->vx[i] = k.wi.x;
+        j->vy[i] = k.wi.y;
+        j->vz[i] = k.wi.z;
+        j->ux[i] = up * k.wo.x;
+        j->uy[i] = up * k.wo.y;
+        j->uz[i] = up * k.wo.z;
+        j->mx[i] = k.m.x;
+        j->my[i] = k.m.y;
+        j->mz[i] = k.m.z;
+        j->c[i] = k.c;
+        j->wm[i] = k.wm;
+        j->F[i] = k.F;
+        j->eta[i] = eta;
+        j->side[i] = up;
+    }
+    ASPI_OPS(&mat->ndf).density_n(&mat->ndf, n, j->mx, j->my, j->mz, j->D);
+    ASPI_OPS(&mat->ndf).sigma_n(&mat->ndf, n, R(1.0), j->vx, j->vy, j->vz, j->si);
 }
 
-/* Reflected and refracted alike, for half spaces with the default masking. Outputs may be inputs: they are
- * written last. */
+ASP_FN case_of joined_case(const joined *j, size_t i)
+{
+    case_of k;
+    k.wi = aspi_vector(j->vx[i], j->vy[i], j->vz[i]);
+    k.wo = aspi_vector(j->ux[i], j->uy[i], j->uz[i]);
+    k.m = aspi_vector(j->mx[i], j->my[i], j->mz[i]);
+    k.eta = j->eta[i];
+    k.c = j->c[i];
+    k.wm = j->wm[i];
+    k.F = j->F[i];
+    k.sigma_i = j->si[i];
+    k.refracts = j->side[i] < R(0.0);
+    return k;
+}
+
+ASP_CLONES static int bsdf_eval_n(const asp_mat *mat, size_t n, const asp_real *const wi[3],
+                                  const asp_real *const wo[3], int cosine, asp_real *out)
+{
+    const asp_shape *shape = &mat->ndf;
+    int scales = aspi_crossing_scales(mat->transport, mat->a.r);
+    asp_real above = aspi_crossing_scale(mat->c.r, scales), below = aspi_crossing_scale(R(1.0) / mat->c.r, scales);
+    asp_real A[ASP_BLOCK], B[ASP_BLOCK], G2[ASP_BLOCK];
+    int far[ASP_BLOCK];
+    const asp_real *iz = wi[2];
+    joined j;
+    size_t i;
+    if (!plain(mat) || !n)
+        return 0;
+    join_n(mat, n, wi, wo, &j);
+    ASPI_OPS(shape).sigma_n(shape, n, R(1.0), j.ux, j.uy, j.uz, j.so);
+    for (i = 0; i < n; i++) {
+        case_of k = joined_case(&j, i);
+        asp_real a = area_over(shape, k.wi, k.sigma_i, inverse_of(k.wi.z), 0);
+        asp_real b = area_over(shape, k.wo, j.so[i], inverse_of(k.wo.z), 0);
+        A[i] = a;
+        B[i] = b;
+        far[i] = k.refracts & lit(&k, 0) & !aspi_beta_is_near(a, b);
+        G2[i] = aspi_beta_near(a, b);
+    }
+    aspi_beta_n(n, A, B, far, G2);
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++) {
+        case_of k = joined_case(&j, i);
+        asp_real co = k.wo.z, J = joint_reflected(shape, k.wi, k.wo, k.sigma_i, j.so[i], R(0.0), R(0.0), 0);
+        asp_real stays = staying_value(k.F, j.D[i], J);
+        asp_real crosses = crossing_value(&k, j.D[i], G2[i], index_of(iz[i], above, below));
+        asp_real f;
+        stays = cosine ? stays * co : stays;
+        crosses = cosine ? crosses : crosses / co;
+        f = aspi_select(k.refracts, crosses, stays);
+        out[i] = aspi_select(lit(&k, 0), f, k.c * R(0.0));
+    }
+    return 1;
+}
+
+ASP_CLONES static int bsdf_pdf_n(const asp_mat *mat, size_t n, const asp_real *const wi[3],
+                                 const asp_real *const wo[3], asp_real *out)
+{
+    joined j;
+    size_t i;
+    if (!plain(mat) || !n)
+        return 0;
+    join_n(mat, n, wi, wo, &j);
+    for (i = 0; i < n; i++) {
+        case_of k = joined_case(&j, i);
+        out[i] = aspi_select(lit(&k, 0), facet_density(&k, j.D[i], 0), k.c * R(0.0));
+    }
+    return 1;
+}
+
+/* Reflected and refracted alike. Outputs may be inputs: they are written last. */
 ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real *const wi[3],
                                     const asp_real *const u[3], asp_real *const wo[3], asp_real *pdf,
                                     asp_real *const weight[3])
@@ -438,7 +453,7 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
     asp_real above = crossing_scale(mat, inverse), below = crossing_scale(mat, index);
     asp_split_rays out;
     size_t i;
-    if (mat->a.r > R(0.0) || index == R(1.0) || mat->mask != 0 || !n)
+    if (!plain(mat) || !n)
         return 0;
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
@@ -464,10 +479,10 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
         asp_real o = area_over(shape, up, so[i], inverse_of(up.z), 0);
         A[i] = a;
         B[i] = o;
-        far[i] = (u3[i] >= F[i]) & !is_near(a, o);
-        G2[i] = beta_near(a, o);
+        far[i] = (u3[i] >= F[i]) & !aspi_beta_is_near(a, o);
+        G2[i] = aspi_beta_near(a, o);
     }
-    beta_n(n, A, B, far, G2);
+    aspi_beta_n(n, A, B, far, G2);
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
         asp_real nothing = aspi_abs((wx[i] + wy[i] + wz[i]) * R(0.0)), sign = wz[i] < R(0.0) ? R(-1.0) : R(1.0);
@@ -490,5 +505,4 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
     }
     return 1;
 }
-#undef BETA_STEPS
 #endif

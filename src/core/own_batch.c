@@ -17,8 +17,18 @@
 
 void ASP_NAME(aspi_own_eval_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, int cosine, asp_c3s out)
 {
-    size_t i;
-    for (i = 0; i < n; i++) {
+    size_t i = 0, k, size;
+    asp_real g[ASP_BLOCK];
+    if (mat->model->ASPI_CALL(eval_n))
+        ASPI_FOR_BLOCKS(i, size, n) {
+            const asp_real *const in[3] = { wi.x + i, wi.y + i, wi.z + i };
+            const asp_real *const to[3] = { wo.x + i, wo.y + i, wo.z + i };
+            if (!mat->model->ASPI_CALL(eval_n)(mat, size, in, to, cosine, g))
+                break;
+            for (k = 0; k < size; k++)
+                out.r[i + k] = out.g[i + k] = out.b[i + k] = g[k];
+        }
+    for (; i < n; i++) {
         asp_v3 a, b;
         asp_c3 f;
         a = aspi_at(wi.x, wi.y, wi.z, i);
@@ -32,8 +42,17 @@ void ASP_NAME(aspi_own_eval_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv
 
 void ASP_NAME(aspi_own_pdf_n)(const asp_mat *mat, size_t n, asp_cv3s wi, asp_cv3s wo, asp_real *out)
 {
-    size_t i;
-    for (i = 0; i < n; i++) {
+    size_t i = 0, size;
+    asp_real p[ASP_BLOCK];
+    if (mat->model->ASPI_CALL(pdf_n))
+        ASPI_FOR_BLOCKS(i, size, n) {
+            const asp_real *const in[3] = { wi.x + i, wi.y + i, wi.z + i };
+            const asp_real *const to[3] = { wo.x + i, wo.y + i, wo.z + i };
+            if (!mat->model->ASPI_CALL(pdf_n)(mat, size, in, to, p))
+                break;
+            memcpy(out + i, p, size * sizeof *p);
+        }
+    for (; i < n; i++) {
         asp_v3 a, b;
         a = aspi_at(wi.x, wi.y, wi.z, i);
         b = aspi_at(wo.x, wo.y, wo.z, i);
