@@ -281,7 +281,8 @@ static void add_material(const char *name, const char *spec, int walks, const se
             add_case(name, bench_scattering[k], 32, 1, calls_32[FIRST_OF_MATERIAL + k][1], f);
             add_case(name, bench_scattering[k], 32, 0, calls_32[FIRST_OF_MATERIAL + k][0], f);
         } else if (walks) {
-            add_case(name, bench_scattering[k], 32, 0, k == 3 ? walk_eval_single_32 : walk_sample_single_32, f);
+            add_case(name, bench_scattering[k], 32, 1, walk_calls_32[k - 3][1], f);
+            add_case(name, bench_scattering[k], 32, 0, walk_calls_32[k - 3][0], f);
         }
     while (first < bench_case_count)
         bench_cases[first++].material = 1;

@@ -40,7 +40,6 @@ SINGLE(walk_eval, F(asp_rgb_type) v = S(asp_walk_eval_cos)(&s->material, AT(s->w
 SINGLE(walk_sample, F(asp_sample_type) v = S(asp_walk_sample)(&s->material, AT(s->wi, i), next, NULL);
        s->out[0][i] = v.wo.x; s->out[1][i] = v.wo.y; s->out[2][i] = v.wo.z; s->out[3][i] = v.pdf;
        s->out[4][i] = v.weight.r; s->out[5][i] = v.weight.g; s->out[6][i] = v.weight.b;)
-#undef WALKS
 #endif
 
 #define BATCH(name, body) \
@@ -62,6 +61,15 @@ BATCH(normal, B(asp_sample_normal)(&s->ndf, COUNT, s->u1, s->u2, out);)
 BATCH(eval, B(asp_eval)(&s->material, COUNT, wi, wo, rgb);)
 BATCH(pdf, B(asp_pdf)(&s->material, COUNT, wi, wo, s->out[0]);)
 BATCH(sample, B(asp_sample)(&s->material, COUNT, wi, s->u1, s->u2, out, s->out[3], rgb);)
+#ifdef WALKS
+BATCH(walk_eval, B(asp_walk_eval_cos)(&s->material, COUNT, wi, wo, next, NULL, 0, rgb);)
+BATCH(walk_sample, B(asp_walk_sample)(&s->material, COUNT, wi, next, NULL, 0, out, s->out[3], rgb);)
+
+static run_function *const F(walk_calls)[2][2] = {
+    { F(walk_eval_single), F(walk_eval_batch) }, { F(walk_sample_single), F(walk_sample_batch) },
+};
+#undef WALKS
+#endif
 
 static run_function *const F(calls)[FUNCTIONS][2] = {
     { F(D_single), F(D_batch) },             { F(sigma_single), F(sigma_batch) },

@@ -104,6 +104,8 @@ static void print_goals(double reference)
          bench_median("dielectric ggx", "sample", 32, 0) / reference, 0.5 * 106.0 / PEER_REFERENCE);
     goal("GGX walk eval, single, over GGX's D",
          bench_median("conductor ggx", "walk eval", 32, 0) / bench_median("ggx", "D", 32, 0), 572.0 / PEER_WALK_D / 3.0);
+    goal("GGX walk eval, batch, over a single call of GGX's D",
+         bench_median("conductor ggx", "walk eval", 32, 1) / bench_median("ggx", "D", 32, 0), 572.0 / PEER_WALK_D / 3.0);
     goal("student_t (3.7) walk eval, single, over its D",
          bench_median("conductor student_t 3.7", "walk eval", 32, 0) / bench_median("student_t 3.7", "D", 32, 0),
          572.0 / PEER_WALK_D / 3.0);

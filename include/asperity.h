@@ -530,6 +530,20 @@ asp_rgbf asp_walk_eval_cosf(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo
 asp_bsdf_samplef asp_walk_samplef(const asp_materialf *mat, asp_vec3f wi, asp_uniforms *next, void *state);
 float asp_walk_pdff(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo);
 
+/* Over arrays (see section 8). The stream of element i is (char *)states + i stride, and it is bit for bit what the
+ * single call gives with it; with stride 0 all draw from one stream, in another order than single calls would.
+ * Conductors of mean slope 0 walk side by side, several times as fast; others go one after the other. */
+void asp_walk_eval_cos_n(const asp_material *mat, size_t n, asp_cvec3s wi, asp_cvec3s wo, asp_uniforms *next,
+                         void *states, size_t stride, asp_rgbs out);
+void asp_walk_sample_n(const asp_material *mat, size_t n, asp_cvec3s wi, asp_uniforms *next, void *states,
+                       size_t stride, asp_vec3s wo, double *pdf, asp_rgbs weight);
+void asp_walk_pdf_n(const asp_material *mat, size_t n, asp_cvec3s wi, asp_cvec3s wo, double *out);
+void asp_walk_eval_cos_nf(const asp_materialf *mat, size_t n, asp_cvec3sf wi, asp_cvec3sf wo, asp_uniforms *next,
+                          void *states, size_t stride, asp_rgbsf out);
+void asp_walk_sample_nf(const asp_materialf *mat, size_t n, asp_cvec3sf wi, asp_uniforms *next, void *states,
+                        size_t stride, asp_vec3sf wo, float *pdf, asp_rgbsf weight);
+void asp_walk_pdf_nf(const asp_materialf *mat, size_t n, asp_cvec3sf wi, asp_cvec3sf wo, float *out);
+
 #ifdef __cplusplus
 }
 #endif

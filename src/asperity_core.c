@@ -48,6 +48,8 @@
 #undef ASP_PRECISION
 #include "core/walk.c"
 #undef ASP_PRECISION
+#include "core/walk_batch.c"
+#undef ASP_PRECISION
 #include "core/walter.c"
 #undef ASP_PRECISION
 #include "bsdf/compensated.c"

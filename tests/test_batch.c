@@ -1,4 +1,4 @@
-/* test_batch.c - batches give element by element what single calls give, samples in place too
+/* test_batch.c - batches and walks over arrays give element by element what single calls give, in place too
  *
  * Read three times: this head, then the body in each precision. */
 #ifndef REAL
@@ -15,13 +15,15 @@ static int passed, failed;
 static uint64_t state = 1;
 
 /* splitmix64, Steele et al. 2014 */
-static double uniform(void)
+static double next(void *from)
 {
-    uint64_t z = (state += 0x9e3779b97f4a7c15u);
+    uint64_t *s = from, z = (*s += 0x9e3779b97f4a7c15u);
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
+
+static double uniform(void) { return next(&state); }
 
 #define REAL double
 #define NAME(x) x
@@ -59,6 +61,9 @@ int main(void)
         "conductor:eta=1.5/1.4/1.2,k=0,ndf=(ggx:alpha=0.5)",
         "conductor:f0=0.9,tint=0.8,ndf=(student_t:alpha=0.5)",
         "lambert_specular:diffuse=0.2/0.1/0.05,specular=1,eta=1.5,ndf=(ggx:alpha=0.2)",
+        "conductor:metal=Cu,ndf=(abc:alpha=0.5)",
+        "conductor:f0=1,ndf=(student_t:alpha=1,gamma=1.9)",
+        "rough_diffuse:albedo=0.8/0.5/0.2,ndf=(ggx:alpha=0.7)",
         "compensated:metal=Au,ndf=(beckmann:alpha=0.8)"
     };
     size_t i;
@@ -76,6 +81,8 @@ int main(void)
         check_32(specs[i], &narrow);
         check_values_64(specs[i], &mat);
         check_values_32(specs[i], &narrow);
+        walk_64(specs[i], &mat);
+        walk_32(specs[i], &narrow);
     }
     printf("%d passed, %d failed\n", passed, failed);
     return failed != 0;
@@ -165,6 +172,59 @@ static void TEST(check_values)(const char *spec, const MATERIAL *mat)
            differ || moved || lit < N / 10 ? "FAILED" : "ok    ", (int)(8 * sizeof(REAL)), spec, lit, through, differ,
            moved);
     if (differ || moved || lit < N / 10)
+        failed++;
+    else
+        passed++;
+}
+
+/* Streams of their own, which must be as far as after single calls; the densities of pairs, and in place. */
+static void TEST(walk)(const char *spec, const MATERIAL *mat)
+{
+    static REAL wi[3][N], wo[3][N], u[2][N], o[8][N], f[3][N];
+    static uint64_t streams[3][N];
+    IN in = { wi[0], wi[1], wi[2] }, to = { wo[0], wo[1], wo[2] };
+    OUT out = { o[0], o[1], o[2] }, back = { wi[0], wi[1], wi[2] };
+    RGB rgb = { o[4], o[5], o[6] }, eval = { f[0], f[1], f[2] };
+    RGB over = { wo[0], wo[1], wo[2] };
+    int i, k, differ = 0, late = 0, moved = 0, lit = 0;
+    TEST(fill)(wo, u);
+    TEST(fill)(wi, u);
+    for (i = 0; i < N; i++)
+        streams[0][i] = streams[1][i] = streams[2][i] = (uint64_t)i * 65537;
+    BATCH(asp_walk_sample)(mat, N, in, next, streams[0], sizeof **streams, out, o[3], rgb);
+    BATCH(asp_walk_eval_cos)(mat, N, in, to, next, streams[0], sizeof **streams, eval);
+    BATCH(asp_walk_pdf)(mat, N, in, to, o[7]);
+    for (i = 0; i < N; i++) {
+        VEC3 from = { wi[0][i], wi[1][i], wi[2][i] }, toward = { wo[0][i], wo[1][i], wo[2][i] };
+        SAMPLE s = NAME(asp_walk_sample)(mat, from, next, &streams[1][i]);
+        ONE x = NAME(asp_walk_eval_cos)(mat, from, toward, next, &streams[1][i]);
+        REAL one[8] = { s.wo.x, s.wo.y, s.wo.z, s.pdf, s.weight.r, s.weight.g, s.weight.b,
+                        NAME(asp_walk_pdf)(mat, from, toward) };
+        for (k = 0; k < 8; k++)
+            differ += !TEST(same)(one[k], o[k][i]);
+        differ += !TEST(same)(x.r, f[0][i]) + !TEST(same)(x.g, f[1][i]) + !TEST(same)(x.b, f[2][i]);
+        late += streams[0][i] != streams[1][i];
+        lit += s.weight.r > 0 && (x.r > 0 || toward.z <= 0 || from.z <= 0);
+    }
+    BATCH(asp_walk_sample)(mat, N, in, next, streams[2], sizeof **streams, back, o[3], rgb);
+    for (i = 0; i < N; i++)
+        for (k = 0; k < 3; k++) {
+            moved += !TEST(same)(wi[k][i], o[k][i]);
+            wi[k][i] = (REAL)0.57735;
+        }
+    BATCH(asp_walk_eval_cos)(mat, N, in, to, next, streams[2], sizeof **streams, eval);
+    for (i = 0; i < N; i++)
+        streams[2][i] = streams[1][i];
+    BATCH(asp_walk_eval_cos)(mat, N, in, to, next, streams[1], sizeof **streams, eval);
+    BATCH(asp_walk_eval_cos)(mat, N, in, to, next, streams[2], sizeof **streams, over);
+    for (i = 0; i < N; i++)
+        for (k = 0; k < 3; k++)
+            moved += !TEST(same)(wo[k][i], f[k][i]);
+    k = strstr(spec, "thin") || !strncmp(spec, "lambert", 7) || !strncmp(spec, "compensated", 11); /* no walks there */
+    k = differ || late || moved || (k ? lit != 0 : lit < N / 4);
+    printf("%s  float%d %s: %d walks with light; %d numbers differ, %d streams, %d in place\n", k ? "FAILED" : "ok    ",
+           (int)(8 * sizeof(REAL)), spec, lit, differ, late, moved);
+    if (k)
         failed++;
     else
         passed++;

@@ -38,6 +38,13 @@
 #define ASP_CLONES_SINGLE
 #endif
 
+/* Not to be taken in by its callers. */
+#ifdef __GNUC__
+#define ASP_APART __attribute__((noinline))
+#else
+#define ASP_APART
+#endif
+
 #if defined(__GNUC__) || defined(__cplusplus)
 #define ASP_RESTRICT __restrict
 #else

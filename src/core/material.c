@@ -29,11 +29,6 @@
 #define sample_facets ASP_NAME(sample_facets)
 #define sample_value ASP_NAME(sample_value)
 #define reflected ASP_NAME(reflected)
-#ifdef __GNUC__
-#define ASPI_APART __attribute__((noinline))
-#else
-#define ASPI_APART
-#endif
 #endif
 
 /* The model's value from the Fresnel term at the squared cosine c2; x.x/x.y multiplies what comes from facets. */
@@ -177,7 +172,7 @@ static asp_sampled sample_mixed(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_
 }
 
 /* The compiler must not take this in: a copy of what was just written in parts would stall. */
-ASPI_APART static asp_sampled sample_facets(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
+ASP_APART static asp_sampled sample_facets(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)
 {
     if (mat->model->mixed)
         return sample_mixed(mat, wi, u1, u2);

@@ -15,13 +15,12 @@
 #else
 #include "core/blocks.h"
 #include "bsdf/bsdf_number.h"
-#include "bsdf/facet_fresnel.h"
+#include "core/block_fresnel.h"
 #include "bsdf/reflection.h"
 #include "core/own_batch.h"
 
 #ifndef ASPI_MATERIAL_BATCH_NAMES
 #define ASPI_MATERIAL_BATCH_NAMES
-#define block_fresnel ASP_NAME(block_fresnel)
 #define block_share ASP_NAME(block_share)
 #define block_eval ASP_NAME(block_eval)
 #define block_pdf ASP_NAME(block_pdf)
@@ -37,16 +36,8 @@
 #define loop_mixed_direction ASP_NAME(loop_mixed_direction)
 #define loop_mixed_parts ASP_NAME(loop_mixed_parts)
 #define block_value ASP_NAME(block_value)
-#define block_ones ASP_NAME(block_ones)
-#define loop_metal ASP_NAME(loop_metal)
-#define loop_prepare ASP_NAME(loop_prepare)
 #define loop_ratio ASP_NAME(loop_ratio)
 #define loop_square ASP_NAME(loop_square)
-#define loop_one ASP_NAME(loop_one)
-#define loop_film ASP_NAME(loop_film)
-#define loop_conductor ASP_NAME(loop_conductor)
-#define loop_f82 ASP_NAME(loop_f82)
-#define loop_dielectric ASP_NAME(loop_dielectric)
 #endif
 
 #define IN const asp_real *ASP_RESTRICT
@@ -186,25 +177,6 @@ ASP_FN void loop_mixed_parts(const asp_shape *k, size_t n, int mask, asp_cv3s wi
     }
 }
 
-ASP_FN void loop_metal(size_t n, asp_real eta, asp_real kappa, IN c2, IN by, IN over, OUT F)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        asp_v2 ratio = aspi_conductor_ratio(aspi_abs(c2[i]), eta, kappa);
-        F[i] = aspi_finite((ratio.x * by[i]) / (ratio.y * over[i]));
-    }
-}
-
-/* by/over, and the cosine. */
-ASP_FN void loop_prepare(size_t n, IN c2, IN by, IN over, OUT c, OUT x)
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        c[i] = aspi_sqrt(aspi_unit_cosine(c2[i]));
-        x[i] = aspi_finite(by[i] / over[i]);
-    }
-}
-
 ASP_FN void loop_ratio(size_t n, IN by, IN over, OUT x)
 {
     size_t i;
@@ -219,89 +191,7 @@ ASP_FN void loop_square(size_t n, IN c, OUT c2)
         c2[i] = c[i] * aspi_abs(c[i]);
 }
 
-ASP_FN void loop_conductor(size_t n, asp_real eta, asp_real kappa, IN c2, IN by, OUT F)
-{
-    size_t i;
-    for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_conductor_at(aspi_unit_cosine(c2[i]), eta, kappa) * by[i];
-}
-
-ASP_FN void loop_f82(size_t n, asp_real f0, asp_real tint, IN c, IN by, OUT F)
-{
-    size_t i;
-    for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_f82(c[i], f0, tint) * by[i];
-}
-
-ASP_FN void loop_dielectric(size_t n, asp_real eta, IN c, IN by, OUT F)
-{
-    size_t i;
-    for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_dielectric(c[i], eta) * by[i];
-}
-
-ASP_FN void loop_film(size_t n, IN table, IN c, IN by, OUT F)
-{
-    size_t i;
-    for (i = 0; i < n; i++)
-        F[i] = aspi_fresnel_film(table, c[i]) * by[i];
-}
-
-ASP_FN void loop_one(size_t n, IN c, IN by, OUT F)
-{
-    size_t i;
-    for (i = 0; i < n; i++)
-        F[i] = (c[i] == c[i] ? R(1.0) : c[i]) * by[i];
-}
-
 /* ---- blocks */
-
-/* The Fresnel term at the squared cosines c2, times by/over. */
-ASP_FN void block_fresnel(const asp_mat *mat, size_t n, const asp_real *c2, const asp_real *above,
-                          const asp_real *over, asp_c3s F)
-{
-    asp_real c[ASP_BLOCK], by[ASP_BLOCK];
-    if (mat->fresnel == ASPI_FRESNEL_METAL) {
-        loop_metal(n, mat->c.r, mat->d.r, c2, above, over, F.r);
-        loop_metal(n, mat->c.g, mat->d.g, c2, above, over, F.g);
-        loop_metal(n, mat->c.b, mat->d.b, c2, above, over, F.b);
-        return;
-    }
-    loop_prepare(n, c2, above, over, c, by);
-    switch (mat->fresnel) {
-    case ASPI_FRESNEL_CONDUCTOR:
-        loop_conductor(n, mat->c.r, mat->d.r, c2, by, F.r);
-        loop_conductor(n, mat->c.g, mat->d.g, c2, by, F.g);
-        loop_conductor(n, mat->c.b, mat->d.b, c2, by, F.b);
-        break;
-    case ASPI_FRESNEL_F82:
-        loop_f82(n, mat->c.r, mat->d.r, c, by, F.r);
-        loop_f82(n, mat->c.g, mat->d.g, c, by, F.g);
-        loop_f82(n, mat->c.b, mat->d.b, c, by, F.b);
-        break;
-    case ASPI_FRESNEL_DIELECTRIC:
-        loop_dielectric(n, mat->c.r, c, by, F.r);
-        memcpy(F.g, F.r, n * sizeof *F.r);
-        memcpy(F.b, F.r, n * sizeof *F.r);
-        break;
-    case ASPI_FRESNEL_FILM:
-        loop_film(n, mat->energy + ENERGY_FILM, c, by, F.r);
-        loop_film(n, mat->energy + ENERGY_FILM + ENERGY_FILM_NODES, c, by, F.g);
-        loop_film(n, mat->energy + ENERGY_FILM + 2 * ENERGY_FILM_NODES, c, by, F.b);
-        break;
-    default:
-        loop_one(n, c, by, F.r);
-        memcpy(F.g, F.r, n * sizeof *F.r);
-        memcpy(F.b, F.r, n * sizeof *F.r);
-    }
-}
-
-ASP_FN void block_ones(asp_real ones[ASP_BLOCK])
-{
-    size_t i;
-    for (i = 0; i < ASP_BLOCK; i++)
-        ones[i] = R(1.0);
-}
 
 /* The model's value from the Fresnel term at the squared cosines c2; x/over multiplies what comes from facets, and
  * y, NULL for the same, what comes from a base. */
@@ -310,11 +200,11 @@ ASP_FN void block_value(const asp_mat *mat, size_t n, const asp_real *c2, const 
 {
     asp_real ones[ASP_BLOCK], part[ASP_BLOCK];
     if (!mat->model->ASPI_CALL(value)) {
-        block_fresnel(mat, n, c2, x, over, out);
+        aspi_block_fresnel(mat, n, c2, x, over, out);
         return;
     }
-    block_ones(ones);
-    block_fresnel(mat, n, c2, ones, ones, out);
+    aspi_block_ones(ones);
+    aspi_block_fresnel(mat, n, c2, ones, ones, out);
     loop_ratio(n, x, over, part);
     mat->model->ASPI_CALL(value_n)(mat, n, part, y ? y : part, out.r, out.g, out.b);
 }
@@ -328,9 +218,9 @@ ASP_FN void block_share(const asp_mat *mat, size_t n, const asp_real *ci, asp_re
     to.r = F[0];
     to.g = F[1];
     to.b = F[2];
-    block_ones(ones);
+    aspi_block_ones(ones);
     loop_square(n, ci, c2);
-    block_fresnel(mat, n, c2, ones, ones, to);
+    aspi_block_fresnel(mat, n, c2, ones, ones, to);
     mat->model->ASPI_CALL(share_n)(mat, n, F[0], F[1], F[2], share);
 }
 
@@ -345,7 +235,7 @@ ASP_CLONES static void block_eval(const asp_mat *mat, size_t n, asp_cv3s wi, asp
     if (!n)
         return;
     if (!cosine)
-        block_ones(ones);
+        aspi_block_ones(ones);
     loop_half(n, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, mx, my, mz, mz2, c2);
     ASPI_OPS(k).density_n(k, n, mx, my, mz, D);
     ASPI_OPS(k).sigma_n(k, n, R(1.0), wi.x, wi.y, wi.z, si);

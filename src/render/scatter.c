@@ -96,32 +96,25 @@ static aspi_stream stream_of(double a, double b)
 static void eval_walk(const aspi_scatter *scatter, size_t n, const aspi_directions *wi,
                       const aspi_directions *wo, double *pdf, aspi_colours *value)
 {
-    for (size_t i = 0; i < n; i++) {
-        asp_vec3 in = get(wi, i), out = get(wo, i);
-        aspi_stream s = stream_of(in.x + out.y, in.y - out.x + out.z);
-        asp_rgb f = asp_walk_eval_cos(scatter->material, in, out, aspi_stream_next, &s);
-        pdf[i] = asp_walk_pdf(scatter->material, in, out);
-        value->r[i] = f.r;
-        value->g[i] = f.g;
-        value->b[i] = f.b;
-    }
+    aspi_stream streams[ASPI_BLOCK];
+    asp_cvec3s in = { wi->x, wi->y, wi->z }, out = { wo->x, wo->y, wo->z };
+    for (size_t i = 0; i < n; i++)
+        streams[i] = stream_of(wi->x[i] + wo->y[i], wi->y[i] - wo->x[i] + wo->z[i]);
+    asp_walk_eval_cos_n(scatter->material, n, in, out, aspi_stream_next, streams, sizeof *streams,
+                        (asp_rgbs){ value->r, value->g, value->b });
+    asp_walk_pdf_n(scatter->material, n, in, out, pdf);
 }
 
 /* The weights of the two ways to sample come from asp_walk_pdf on both sides, so that they sum to 1. */
 static void sample_walk(const aspi_scatter *scatter, size_t n, const aspi_directions *wi, const double *u1,
                         const double *u2, aspi_directions *wo, double *pdf, aspi_colours *weight)
 {
-    for (size_t i = 0; i < n; i++) {
-        aspi_stream stream = stream_of(u1[i], u2[i]);
-        asp_bsdf_sample s = asp_walk_sample(scatter->material, get(wi, i), aspi_stream_next, &stream);
-        wo->x[i] = s.wo.x;
-        wo->y[i] = s.wo.y;
-        wo->z[i] = s.wo.z;
-        pdf[i] = s.pdf;
-        weight->r[i] = s.weight.r;
-        weight->g[i] = s.weight.g;
-        weight->b[i] = s.weight.b;
-    }
+    aspi_stream streams[ASPI_BLOCK];
+    for (size_t i = 0; i < n; i++)
+        streams[i] = stream_of(u1[i], u2[i]);
+    asp_walk_sample_n(scatter->material, n, (asp_cvec3s){ wi->x, wi->y, wi->z }, aspi_stream_next, streams,
+                      sizeof *streams, (asp_vec3s){ wo->x, wo->y, wo->z }, pdf,
+                      (asp_rgbs){ weight->r, weight->g, weight->b });
 }
 
 /* ------------------------------------------------------------------ blocks */

@@ -49,13 +49,15 @@ static void add_bits(uint64_t *h, uint64_t bits)
 static uint64_t state;
 
 /* splitmix64; [0, 1) in 24 bits, exact in both precisions */
-static double uniform(void)
+static double next_of(void *from)
 {
-    uint64_t z = (state += 0x9e3779b97f4a7c15u);
+    uint64_t *s = (uint64_t *)from, z = (*s += 0x9e3779b97f4a7c15u);
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return (double)((z ^ (z >> 31)) >> 40) * 0x1p-24;
 }
+
+static double uniform(void) { return next_of(&state); }
 
 /* Uniform on the sphere without sine and cosine (Marsaglia 1972). */
 static asp_vec3 direction(void)
@@ -341,6 +343,7 @@ int main(int argc, char **argv)
 #define arrays ASP_NAME(arrays)
 #define store ASP_NAME(store)
 #define materials ASP_NAME(materials)
+#define walks ASP_NAME(walks)
 #define model ASP_NAME(model)
 #define hash_sample ASP_NAME(hash_sample)
 #define some_direction ASP_NAME(some_direction)
@@ -370,11 +373,7 @@ static arrays store;
 
 static asp_v3 ASP_NAME(vector)(const asp_real *x, const asp_real *y, const asp_real *z, size_t i)
 {
-    asp_v3 v;
-    v.x = x[i];
-    v.y = y[i];
-    v.z = z[i];
-    return v;
+    return (asp_v3){ x[i], y[i], z[i] };
 }
 #define WI ASP_NAME(vector)(store.ix, store.iy, store.iz, i)
 #define WO ASP_NAME(vector)(store.ox, store.oy, store.oz, i)
@@ -408,6 +407,35 @@ static void materials(const MATERIAL *mat, uint64_t *h, CV3 wi, CV3 wo, V3 out, 
         same(&h[Q_SAMPLE], s.weight.g, store.e[i]);
         same(&h[Q_SAMPLE], s.weight.b, store.f[i]);
     }
+}
+
+/* Each from a stream of its own, which goes as far as with single calls. */
+static void walks(const MATERIAL *mat, uint64_t *h, CV3 wi, CV3 wo, V3 out, VRGB colour)
+{
+    static uint64_t batch[COUNT], single[COUNT];
+    size_t i;
+    EACH
+        batch[i] = single[i] = i << 32;
+    CALL_N(walk_eval_cos)(mat, COUNT, wi, wo, next_of, batch, sizeof *batch, colour);
+    EACH {
+        asp_c3 f = CALL(walk_eval_cos)(mat, WI, WO, next_of, &single[i]);
+        same(&h[Q_WALK_EVAL], f.r, store.d[i]);
+        same(&h[Q_WALK_EVAL], f.g, store.e[i]);
+        same(&h[Q_WALK_EVAL], f.b, store.f[i]);
+    }
+    CALL_N(walk_sample)(mat, COUNT, wi, next_of, batch, sizeof *batch, out, store.g, colour);
+    EACH {
+        SAMPLE s = CALL(walk_sample)(mat, WI, next_of, &single[i]);
+        same(&h[Q_WALK_SAMPLE], s.wo.x, store.a[i]);
+        same(&h[Q_WALK_SAMPLE], s.wo.y, store.b[i]);
+        same(&h[Q_WALK_SAMPLE], s.wo.z, store.c[i]);
+        same(&h[Q_WALK_SAMPLE], s.pdf, store.g[i]);
+        same(&h[Q_WALK_SAMPLE], s.weight.g, store.e[i]);
+        mismatches += batch[i] != single[i];
+    }
+    CALL_N(walk_pdf)(mat, COUNT, wi, wo, store.g);
+    EACH
+        same(&h[Q_WALK_PDF], CALL(walk_pdf)(mat, WI, WO), store.g[i]);
 }
 
 static void all(const asp_shape *k, const asp_ndf *ndf, uint64_t *h)
@@ -499,6 +527,8 @@ static void all(const asp_shape *k, const asp_ndf *ndf, uint64_t *h)
         mat = asp_material_narrow(&wide);
 #endif
         materials(&mat, h, wi, wo, out, colour);
+        if (q < 2)
+            walks(&mat, h, wi, wo, out, colour);
     }
 }
 
@@ -555,6 +585,7 @@ static void model(const MATERIAL *mat, uint64_t *h)
 
 #undef hash
 #undef all
+#undef walks
 #undef same
 #undef arrays
 #undef store
