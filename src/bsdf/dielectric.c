@@ -58,6 +58,7 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define make_case ASP_NDF_NAME(_make)
 #define case_at ASP_NDF_NAME(_case_at)
 #define lit ASP_NDF_NAME(_lit)
+#define eval_as ASP_NDF_NAME(_eval_as)
 #define staying_value ASP_NDF_NAME(_staying_value)
 #define crossing_value ASP_NDF_NAME(_crossing_value)
 #define plain ASP_NDF_NAME(_plain)
@@ -119,9 +120,8 @@ ASP_FN int lit(const case_of *k, int thin)
 /* The index of the other side over that of the side of `sign`. */
 ASP_FN asp_real index_of(asp_real sign, asp_real eta, asp_real inverse) { return sign < R(0.0) ? inverse : eta; }
 
-ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
+ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo, int thin)
 {
-    int thin = mat->a.r > R(0.0);
     asp_real sign = wi.z < R(0.0) ? R(-1.0) : R(1.0), eta = sign < R(0.0) && !thin ? R(1.0) / mat->c.r : mat->c.r;
     case_of k = case_at(aspi_turned(wi, sign, thin), aspi_turned(wo, sign, thin), eta, thin);
     k.dark = !lit(&k, thin) || mat->c.r == R(1.0);
@@ -172,11 +172,10 @@ ASP_FN asp_real crossing_value(const case_of *k, asp_real D, asp_real G2, asp_re
 }
 
 /* f times |cos_o|^cosine. */
-static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, asp_c3 *out)
+ASP_FN asp_real eval_as(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, int thin, int mask)
 {
-    case_of k = make_case(mat, *wi, *wo);
+    case_of k = make_case(mat, *wi, *wo, thin);
     asp_real f = k.c * R(0.0), D, so, co = aspi_abs(wo->z);
-    int mask = mat->mask, thin = mat->a.r > R(0.0);
     if (!k.dark) {
         D = aspi_density_of(&mat->ndf, k.m);
         if (!k.refracts || thin) {
@@ -194,7 +193,15 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
             f = cosine ? f : f / co;
         }
     }
-    out->r = out->g = out->b = f;
+    return f;
+}
+
+static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, asp_c3 *out)
+{
+    /* constants spare the default the others' arithmetic */
+    int thin = mat->a.r > R(0.0);
+    out->r = out->g = out->b = !thin && mat->mask == 0 ? eval_as(mat, wi, wo, cosine, 0, 0)
+                                                      : eval_as(mat, wi, wo, cosine, thin, mat->mask);
 }
 
 /* Density of wo by the facet of a case that is not dark. */
@@ -210,8 +217,8 @@ ASP_FN asp_real facet_density(const case_of *k, asp_real D, int thin)
 
 static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
 {
-    case_of k = make_case(mat, *wi, *wo);
     int thin = mat->a.r > R(0.0);
+    case_of k = make_case(mat, *wi, *wo, thin);
     if (k.dark)
         return k.c * R(0.0);
     return facet_density(&k, aspi_density_of(&mat->ndf, k.m), thin);
