@@ -343,15 +343,17 @@ asp_material asp_lambert_specular(const asp_ndf *ndf, asp_rgb diffuse, asp_rgb s
  * 1 is no boundary: sample passes straight on with weight 1 and density 0, eval is 0. thin: 1 for a sheet. */
 asp_material asp_dielectric(const asp_ndf *ndf, double eta, int thin, int transport, int mask);
 
-/* Lambertian facets of an albedo in [0, 1]; eval is a quadrature of 466 nodes, its error about 1e-3. */
+/* Lambertian facets of an albedo in [0, 1]; eval is a quadrature of 466 nodes. Its relative error, above
+ * cosines of 0.1: about 1e-3, at most 0.02; it grows near grazing (0.1 for ggx of alpha 0.3). */
 asp_material asp_rough_diffuse(const asp_ndf *ndf, asp_rgb albedo, int mask);
 
 /* A dielectric coat, eta in (1, 10], over a Lambertian base, all reflections between them included; an
  * albedo of 1 returns all light. Prepares a table: about 1 ms, 20 ms where azimuth matters. */
 asp_material asp_plastic(const asp_ndf *ndf, asp_rgb albedo, double eta, int mask);
 
-/* The conductor of mat's distribution and masking at n wavelengths: f with eta[i] + i k[i]. */
-void asp_eval_spectrum(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, size_t n, const double *eta,
+/* f of a conductor or a dielectric at n wavelengths, whose indices are eta[i] + i k[i] (a dielectric's k is not
+ * read). ASP_EINVAL for other materials and under films: out is as it was. */
+asp_status asp_eval_spectrum(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, size_t n, const double *eta,
                        const double *k, double *out);
 
 typedef struct asp_bsdf_sample {
@@ -360,8 +362,8 @@ typedef struct asp_bsdf_sample {
     asp_rgb  weight;                      /* f cos(theta_o) / pdf; 0 where wo is below the horizon */
 } asp_bsdf_sample;
 
-/* f, f cos(theta_o) and the density of sample's wo. 0 for wi.z <= 0; f is 0 for wo.z <= 0, the
- * density need not be (a facet can send light down). */
+/* f, f cos(theta_o) and the density of sample's wo. Where nothing refracts f is 0 for wi.z <= 0 and for
+ * wo.z <= 0, the density for wi.z <= 0 only (a facet can send light down). */
 asp_rgb asp_eval(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
 asp_rgb asp_eval_cos(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
 double  asp_pdf(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
@@ -369,6 +371,10 @@ asp_bsdf_sample asp_sample(const asp_material *mat, asp_vec3 wi, double u1, doub
 /* The same with the number that chooses between reflection and refraction given; asp_sample makes one
  * of the bits of u1 and u2. Models with one lobe do not use it. */
 asp_bsdf_sample asp_sample_lobe(const asp_material *mat, asp_vec3 wi, double u1, double u2, double u3);
+
+/* An estimate of f by one facet, drawn by u1 and u2: its mean over both is f without quadrature. f itself for
+ * all but rough_diffuse of exact form. */
+asp_rgb asp_eval_stochastic(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, double u1, double u2);
 
 /* Reflection by visible normals that leaves out most of those that send light down (Eto, Tokuyoshi 2023):
  * less variance on rough GGX. Conductors over ggx without mean slope; anything else as asp_sample does. */
@@ -523,6 +529,7 @@ asp_bsdf_sample asp_walk_sample(const asp_material *mat, asp_vec3 wi, asp_unifor
  * wherever the walk can end, integrates to at most 1. */
 double asp_walk_pdf(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
 
+asp_rgbf asp_eval_stochasticf(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo, float u1, float u2);
 asp_bsdf_samplef asp_sample_boundedf(const asp_materialf *mat, asp_vec3f wi, float u1, float u2);
 float            asp_pdf_boundedf(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo);
 asp_rgbf asp_walk_eval_cosf(const asp_materialf *mat, asp_vec3f wi, asp_vec3f wo, asp_uniforms *next,

@@ -273,12 +273,18 @@ static void check_walk(void)
 static void check_bounded(void)
 {
     static const char *const specs[] = { "ggx:alpha=0.2", "ggx:alpha=0.8", "ggx:alpha_x=0.3,alpha_y=0.9,rotation=0.7" };
-    double worst = 0, gain = 1e9, apart = 0;
+    double worst = 0, gain = 1e9, apart = 0, off = 0;
     for (int i = 0; i < 3; i++)
         for (int t = 0; t < 3; t++) {
             asp_ndf k = ndf(specs[i]);
             asp_material m = asp_mirror(&k, 0);
             asp_vec3 wi = direction(0.1 + 0.6 * t, 1);
+            double all = 0;
+            for (int j = 0; j < 400 * 400; j++) {
+                double z = (j / 400 + 0.5) / 200 - 1, s = sqrt(1 - z * z), a = 2 * PI * (j % 400 + 0.5) / 400;
+                all += asp_pdf_bounded(&m, wi, (asp_vec3){ s * cos(a), s * sin(a), z }) * 4 * PI / (400 * 400);
+            }
+            off = fmax(off, fabs(all - 1));
             double mean[2] = { 0, 0 }, square[2] = { 0, 0 };
             int n = 40000;
             for (int j = 0; j < n; j++) {
@@ -295,6 +301,7 @@ static void check_bounded(void)
             gain = fmin(gain, (square[0] - mean[0] * mean[0]) / (square[1] - mean[1] * mean[1]));
         }
     expect(worst < 1e-12, "bounded sampling: the density of the sample is asp_pdf_bounded", worst);
+    expect(off < 2e-3, "it integrates to 1 over all directions", off);
     expect(apart < 2e-3, "bounded and plain sampling agree in the mean", apart);
     expect(gain > 1.05, "bounded sampling has less variance everywhere, factor at least", gain);
 }
@@ -411,6 +418,20 @@ static void check_spectrum(void)
         asp_eval_spectrum(&mat, wi, wo, 3, eta, k, f);
         worst = fmax(fabs(f[0] - rgb.r), fmax(fabs(f[1] - rgb.g), fabs(f[2] - rgb.b)));
         expect(worst < 1e-14, "three wavelengths are the three channels", worst);
+        mat = material("dielectric:eta=1.5,ndf=(ggx:alpha=0.3)");
+        wo = direction(0.32, 0.1);
+        worst = asp_eval_spectrum(&mat, wi, (asp_vec3){ -wo.x, -wo.y, -wo.z }, 3, (double[3]){ 1.4, 1.5, 1.6 }, NULL, f);
+        worst += fabs(f[1] / asp_eval(&mat, wi, (asp_vec3){ -wo.x, -wo.y, -wo.z }).r - 1) + (f[0] == f[1]);
+        expect(worst < 1e-14, "and a dielectric's index its own, in transmission too", worst);
+        mat = material("plastic:ndf=(ggx)");
+        worst = asp_eval_spectrum(&mat, wi, wo, 3, eta, k, f) != ASP_EINVAL;
+        mat = material("conductor:eta=1.5,film=200,ndf=(ggx)");
+        worst += asp_eval_spectrum(&mat, wi, wo, 3, eta, k, f) != ASP_EINVAL;
+        expect(worst == 0, "other materials and films are refused", worst);
+        mat = material("conductor:f0=0.9,tint=1.05,ndf=(ggx:alpha=0.3)");
+        wo = direction(0.9, 3);
+        rgb = asp_eval(&mat, wi, wo);
+        expect(rgb.r > 0, "tints above 1, which some metals have", rgb.r);
     }
 }
 
@@ -489,6 +510,33 @@ static void check_eon(void)
     expect(fujii < 0.8, "fujii, which it completes, does not", fujii);
     expect(dark < 0.5 + 1e-4, "eon with albedo 1/2 returns at most half", dark);
     expect(back < 1e-14, "eon is reciprocal", back);
+    worst = 0;
+    for (int a = 0; a < 6; a++) { /* the mean of estimates by one facet */
+        asp_material m = material(a % 2 ? "rough_diffuse:albedo=0.7,ndf=(ggx:alpha=0.6)"
+                                        : "rough_diffuse:albedo=0.7,mask=uncorrelated,ndf=(beckmann:alpha_x=0.3,alpha_y=0.8)");
+        asp_vec3 wi = direction(0.2 + 0.2 * a, 1), wo = direction(1.2 - 0.2 * a, 2.5 + a);
+        int n = 200000;
+        double sum = 0;
+        for (int j = 0; j < n; j++)
+            sum += asp_eval_stochastic(&m, wi, wo, fmod(0.5 + 0.7548776662466927 * j, 1),
+                                       fmod(0.5 + 0.5698402909980532 * j, 1)).r / n;
+        worst = fmax(worst, fabs(sum / asp_eval(&m, wi, wo).r - 1));
+    }
+    expect(worst < 5e-3, "one facet drawn estimates Lambertian facets' quadrature", worst);
+    for (int a = 0; a < 4; a++) {
+        static const char *const pairs[4][2] = { { "torrance_sparrow:alpha=0.1", "torrance_sparrow:alpha=1" },
+                                                 { "abc:alpha=10", "abc:alpha=10000" },
+                                                 { "gtr:alpha=0.1", "gtr:alpha=0.9" }, { "sgd:alpha=0.01", "sgd:alpha=1" } };
+        double f[2];
+        char spec[96];
+        for (int b = 0; b < 2; b++) {
+            asp_vec3 w = direction(0.9, 0);
+            snprintf(spec, sizeof spec, "rough_diffuse:form=oren_nayar,ndf=(%s)", pairs[a][b]);
+            asp_material m = material(spec);
+            f[b] = asp_eval(&m, w, w).r;
+        }
+        expect(fabs(f[1] - f[0]) > 0.01, "oren_nayar knows the roughness that is a shape number", f[1] - f[0]);
+    }
 }
 
 static void check_refusals(void)

@@ -102,7 +102,7 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
     { "eta", "index of refraction, interior over exterior; with k that of a conductor" }, \
     { "k", "extinction coefficient" }, \
     { "f0", "reflectance at normal incidence, Schlick's term" }, \
-    { "tint", "with f0: factor at 82 degrees (F82-tint), 1 = Schlick" }, \
+    { "tint", "with f0: factor at 82 degrees (F82-tint), 0 to 2, 1 = Schlick" }, \
     { "film", "thickness in nm of a thin film on it, up to 10000" }, \
     { "film_eta", "index of the film, 1 to 10, default 1.33" }
 

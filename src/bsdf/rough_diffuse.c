@@ -3,10 +3,12 @@
  * f = albedo/pi G2/(cos_i cos_o) int max(0, wi.m) max(0, wo.m) D(m) dm, with the visible facets of either
  * side as nodes: over the visible normals of wi the integral is sigma(wi) times the mean of max(0, wo.m).
  * Exact but for the rule, a lattice of ROUGH_NODES points of (u1, u2) (Fibonacci's, made periodic in u2
- * by itself and in u1 by reflection); both sides are averaged, so that f is reciprocal to rounding.
+ * by itself and in u1 by reflection); both sides are averaged, so that f is reciprocal to rounding. One facet
+ * drawn by random numbers instead is an unbiased estimate: asp_eval_stochastic.
  *
  * Approximations by name, which take their one number from the slopes' spread along x and y (tan^2 of
- * sigma = (alpha_x^2 + alpha_y^2)/4, the Gaussian facets of the same alpha): `oren_nayar` (Oren, Nayar
+ * sigma = (alpha_x^2 + alpha_y^2)/4, of the Gaussian facets of the same mean |slope|, which every distribution
+ * has): `oren_nayar` (Oren, Nayar
  * 1994, the qualitative model) and `fujii` (Fujii 2012, without its dark ring at grazing angles). `eon`
  * (Portsmouth, Kutz, Hill 2025) gives back what fujii's loses, albedo 1 - E(w), so that facets of albedo 1
  * return all light: with Em the mean of E
@@ -17,6 +19,8 @@
 
 #define ROUGH_NODES 233
 #define ROUGH_STEP 144
+
+extern const asp_bsdf asp_bsdf_rough_diffuse;
 
 #define ASP_NDF rough_diffuse
 #define ASP_PRECISION 64
@@ -32,14 +36,35 @@ static double given_back(double a, double mean)
     return a * a * mean / (1.0 - a * (1.0 - mean)) / aspi_max_64(1.0 - mean, 1e-12);
 }
 
+/* 2 sigma(w), w horizontal, is the mean of |slope| along w without the mean slope; Gaussian facets have
+ * alpha/sqrt(pi). */
+static double alpha_along(const asp_ndf *level, double x, double y)
+{
+    asp_vec3 w, back;
+    w.x = x;
+    w.y = y;
+    w.z = 0.0;
+    back.x = -x;
+    back.y = -y;
+    back.z = 0.0;
+    return aspi_sqrt_64(ASP_PI) * (asp_sigma(level, w) + asp_sigma(level, back));
+}
+
+/* b.g is the approximations' one number. */
 static asp_status rough_diffuse_prepare(asp_material *out, asp_error *err)
 {
-    double angle = rough_diffuse_fujii_angle_64(&out->ndf);
-    /* the mean of E(w) against 2 cos dcos */
-    double mean = (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * ASP_PI)) * angle) / (1.0 + (0.5 - 2.0 / (3.0 * ASP_PI)) * angle);
+    asp_ndf level = out->ndf;
+    double x, y, angle, mean;
     (void)err;
+    level.map.tx = level.map.ty = 0.0;
+    x = alpha_along(&level, 1.0, 0.0);
+    y = alpha_along(&level, 0.0, 1.0);
+    out->b.g = aspi_atan_64(0.5 * aspi_sqrt_64(x * x + y * y), 1.0);
     if (out->b.r != ROUGH_EON)
         return ASP_OK;
+    angle = rough_diffuse_fujii_angle_64(out);
+    /* the mean of E(w) against 2 cos dcos */
+    mean = (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * ASP_PI)) * angle) / (1.0 + (0.5 - 2.0 / (3.0 * ASP_PI)) * angle);
     out->c.r = given_back(out->a.r, mean);
     out->c.g = given_back(out->a.g, mean);
     out->c.b = given_back(out->a.b, mean);
@@ -86,15 +111,22 @@ ASP_RECORD asp_bsdf asp_bsdf_rough_diffuse = {
 
 #ifndef ROUGH_DIFFUSE_NAMES
 #define ROUGH_DIFFUSE_NAMES
+#define half_at ASP_NDF_NAME(_half_at)
 #define half_mean ASP_NDF_NAME(_half_mean)
+#define masked_part ASP_NDF_NAME(_masked_part)
 #define exact_part ASP_NDF_NAME(_exact_part)
 #define named_part ASP_NDF_NAME(_named_part)
-#define slope_angle ASP_NDF_NAME(_angle)
 #define fujii_angle ASP_NDF_NAME(_fujii_angle)
 #define fujii_lost ASP_NDF_NAME(_fujii_lost)
 #endif
 
-/* Mean of max(0, b.m) over the facets visible from a. */
+/* max(0, b.m) of a facet visible from a. */
+static asp_real half_at(const asp_shape *k, const asp_v3 *a, const asp_v3 *b, asp_real u1, asp_real u2)
+{
+    return aspi_above(aspi_dot(*b, ASPI_CALL(asp_sample_visible)(k, *a, u1, u2)));
+}
+
+/* Its mean over those facets. */
 static asp_real half_mean(const asp_shape *k, const asp_v3 *a, const asp_v3 *b)
 {
     asp_real sum = R(0.0);
@@ -102,11 +134,19 @@ static asp_real half_mean(const asp_shape *k, const asp_v3 *a, const asp_v3 *b)
     for (i = 0; i < ROUGH_NODES; i++) {
         asp_real x = (R(i) + R(0.5)) * R(1.0 / ROUGH_NODES);
         asp_real y = R(i * ROUGH_STEP % ROUGH_NODES) * R(1.0 / ROUGH_NODES);
-        asp_v3 m = ASPI_CALL(asp_sample_visible)(k, *a, x, y);
-        asp_real c = aspi_dot(*b, m);
-        sum = sum + (c > R(0.0) ? c : R(0.0));
+        sum = sum + half_at(k, a, b, x, y);
     }
     return sum * R(1.0 / ROUGH_NODES);
+}
+
+/* What masking leaves of the integral. */
+static asp_real masked_part(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, asp_real si, asp_real so,
+                            asp_real integral)
+{
+    const asp_shape *k = &mat->ndf;
+    asp_real mi = aspi_masked(k, *wi, si, mat->mask), mo = aspi_masked(k, *wo, so, mat->mask);
+    return integral * aspi_joint(wi->z, wo->z, mi, mo, R(1.0), R(1.0), R(1.0),
+                                 mat->mask & 15 ? ASP_MASK_UNCORRELATED : ASP_MASK_CORRELATED);
 }
 
 /* pi f / albedo. */
@@ -114,31 +154,34 @@ static asp_real exact_part(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *w
 {
     const asp_shape *k = &mat->ndf;
     asp_real si = ASPI_CALL(asp_sigma)(k, *wi), so = ASPI_CALL(asp_sigma)(k, *wo);
-    asp_real integral = R(0.5) * (si * half_mean(k, wi, wo) + so * half_mean(k, wo, wi));
-    asp_real mi = aspi_masked(k, *wi, si, mat->mask), mo = aspi_masked(k, *wo, so, mat->mask);
-    return integral * aspi_joint(wi->z, wo->z, mi, mo, R(1.0), R(1.0), R(1.0),
-                                 mat->mask & 15 ? ASP_MASK_UNCORRELATED : ASP_MASK_CORRELATED);
+    return masked_part(mat, wi, wo, si, so, R(0.5) * (si * half_mean(k, wi, wo) + so * half_mean(k, wo, wi)));
 }
 
-/* The one number of the approximations; Fujii's reaches up to 1, where f is 0 at last. */
-static asp_real slope_angle(const asp_shape *k)
+asp_c3 ASPI_CALL(asp_eval_stochastic)(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_real u1, asp_real u2)
 {
-    asp_real spread = R(0.25) * (k->map.m00 * k->map.m00 + k->map.m01 * k->map.m01
-                                 + k->map.m10 * k->map.m10 + k->map.m11 * k->map.m11);
-    return aspi_atan(aspi_sqrt(spread), R(1.0));
+    asp_real f = (wi.x + wi.y + wi.z + wo.x + wo.y + wo.z) * R(0.0), si, so;
+    asp_c3 out;
+    if (mat->model != &asp_bsdf_rough_diffuse || mat->b.r != R(ROUGH_EXACT))
+        return ASPI_CALL(asp_eval)(mat, wi, wo);
+    if (wi.z > R(0.0) && wo.z > R(0.0) && f == R(0.0)) {
+        si = ASPI_CALL(asp_sigma)(&mat->ndf, wi);
+        so = ASPI_CALL(asp_sigma)(&mat->ndf, wo);
+        f = R(1.0 / ASP_PI) * masked_part(mat, &wi, &wo, si, so, si * half_at(&mat->ndf, &wi, &wo, u1, u2));
+    }
+    out.r = mat->a.r * f;
+    out.g = mat->a.g * f;
+    out.b = mat->a.b * f;
+    return out;
 }
 
-static asp_real fujii_angle(const asp_shape *k)
-{
-    asp_real angle = slope_angle(k);
-    return angle < R(1.0) ? angle : R(1.0);
-}
+/* Fujii's number reaches up to 1, where f is 0 at last. */
+static asp_real fujii_angle(const asp_mat *mat) { return mat->b.g < R(1.0) ? mat->b.g : R(1.0); }
 
 /* 1 - E(w) of fujii's form with albedo 1: with s, c the sine and cosine of the angle t, E =
  * (1 + angle/pi (s (t - s c) + 2/3 (s (1 - s^3)/c - s))) over what divides f. Along the horizon it is 0. */
-static asp_real fujii_lost(const asp_shape *k, const asp_v3 *w)
+static asp_real fujii_lost(const asp_mat *mat, const asp_v3 *w)
 {
-    asp_real angle = fujii_angle(k), s2 = w->x * w->x + w->y * w->y, s = aspi_sqrt(s2), c = w->z;
+    asp_real angle = fujii_angle(mat), s2 = w->x * w->x + w->y * w->y, s = aspi_sqrt(s2), c = w->z;
     asp_real G = s * (aspi_atan(s, c) - s * c)
                + R(2.0 / 3.0) * s * (c * (R(1.0) + s + s2) / (R(1.0) + s) - R(1.0));
     asp_real lost = angle * (R(0.5 - 2.0 / (3.0 * ASP_PI)) - R(1.0 / ASP_PI) * G)
@@ -150,15 +193,14 @@ static asp_real fujii_lost(const asp_shape *k, const asp_v3 *w)
  * Cartesian form); t = max(cos_i, cos_o) where s > 0. */
 static asp_real named_part(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
 {
-    const asp_shape *k = &mat->ndf;
-    asp_real angle = slope_angle(k), s2 = angle * angle;
+    asp_real angle = mat->b.g, s2 = angle * angle;
     asp_real s = wi->x * wo->x + wi->y * wo->y, t;
     if (mat->b.r == R(ROUGH_OREN_NAYAR)) {
         t = s > R(0.0) ? aspi_max(aspi_max(wi->z, wo->z), ASP_SMALLEST) : R(1.0);
         s = s > R(0.0) ? s : R(0.0);
         return R(1.0) - R(0.5) * s2 / (s2 + R(0.33)) + R(0.45) * s2 / (s2 + R(0.09)) * s / t;
     }
-    angle = fujii_angle(k);
+    angle = fujii_angle(mat);
     t = s > R(0.0) ? aspi_max(aspi_max(wi->z, wo->z), ASP_SMALLEST) : R(1.0);
     return (R(1.0) + angle * s / t) / (R(1.0) + R(0.5 - 2.0 / (3.0 * ASP_PI)) * angle);
 }
@@ -170,7 +212,7 @@ static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
         asp_real by = R(1.0 / ASP_PI) * (cosine ? wo->z : R(1.0));
         f = by * (mat->b.r == R(ROUGH_EXACT) ? exact_part(mat, wi, wo) : named_part(mat, wi, wo));
         if (mat->b.r == R(ROUGH_EON))
-            rest = by * (fujii_lost(&mat->ndf, wi) * fujii_lost(&mat->ndf, wo));
+            rest = by * (fujii_lost(mat, wi) * fujii_lost(mat, wo));
     }
     out->r = mat->a.r * f + mat->c.r * rest;
     out->g = mat->a.g * f + mat->c.g * rest;

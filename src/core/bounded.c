@@ -25,6 +25,7 @@
 #define ASPI_BOUNDED_NAMES
 #define bounded ASP_NAME(bounded)
 #define cap_bound ASP_NAME(cap_bound)
+#define above_cap ASP_NAME(above_cap)
 extern const asp_model asp_model_ggx, asp_model_ellipsoid;
 #endif
 
@@ -49,18 +50,28 @@ ASP_FN asp_real cap_bound(const asp_shape *k, asp_v3 wi)
     return (R(1.0) - a2) * s2 / (s2 + a2 * wi.z * wi.z);
 }
 
+/* How far the mirror image of v in the facet of the standard surface lies above the end of the cap. Directions above
+ * the horizon are all in it. */
+ASP_FN asp_real above_cap(const asp_shape *k, asp_v3 v, asp_v3 m, asp_real bound)
+{
+    asp_v3 n = aspi_normalize(aspi_facet(k, m));
+    return R(2.0) * aspi_dot(v, n) * n.z - v.z + bound * v.z;
+}
+
 asp_real ASPI_CALL(asp_pdf_bounded)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 {
     asp_v3 v, m;
-    asp_real length, D;
+    asp_real length, D, bound;
     if (!bounded(mat, wi))
         return ASPI_CALL(asp_pdf)(mat, wi, wo);
     m = aspi_half_vector(wi, wo);
     v = aspi_view(&mat->ndf, wi);
     length = aspi_sqrt(aspi_length2(v) + v.z * v.z);
     D = ASPI_CALL(asp_D)(&mat->ndf, m);
-    return wo.z <= R(0.0) && aspi_dot(wi, m) <= R(0.0)
-         ? R(0.0) : aspi_finite(D / (R(2.0) * (cap_bound(&mat->ndf, wi) * v.z + length)));
+    bound = cap_bound(&mat->ndf, wi);
+    if (wo.z <= R(0.0) && above_cap(&mat->ndf, v, m, bound) < R(0.0))
+        return R(0.0);
+    return aspi_finite(D / (R(2.0) * (bound * v.z + length)));
 }
 
 asp_sampled ASPI_CALL(asp_sample_bounded)(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2)

@@ -130,7 +130,7 @@ static asp_status parse_bare(aspi_spec *spec, double initial_eta, asp_material *
     if (!s)
         s = aspi_spec_colour(spec, "f0", 0.0, 0, 1.0, &f0, &has_f0, err);
     if (!s)
-        s = aspi_spec_colour(spec, "tint", 0.0, 0, 1.0, &tint, &has_tint, err);
+        s = aspi_spec_colour(spec, "tint", 0.0, 0, 2.0, &tint, &has_tint, err);
     if (s)
         return s;
     if (has_metal + (has_eta || has_k) + (has_f0 || has_tint) > 1)

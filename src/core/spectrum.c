@@ -202,20 +202,31 @@ asp_status asp_index_of_f82(double f0, double tint, double *eta, double *k, asp_
 
 /* ---- a material at wavelengths of its own */
 
-void asp_eval_spectrum(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, size_t n, const double *eta,
-                       const double *k, double *out)
+asp_status asp_eval_spectrum(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, size_t n, const double *eta,
+                             const double *k, double *out)
 {
-    asp_material mirror;
+    asp_material other;
     asp_vec3 m;
     double l2, c, x;
     size_t i;
+    if (mat->model->facets == ASPI_FACETS_REFRACT) {
+        other = *mat;
+        for (i = 0; i < n; i++) {
+            other.c.r = eta[i];
+            out[i] = asp_eval(&other, wi, wo).r;
+        }
+        return ASP_OK;
+    }
+    if (mat->model->facets != ASPI_FACETS_REFLECT || mat->fresnel == ASPI_FRESNEL_FILM)
+        return ASP_EINVAL;
     m.x = wi.x + wo.x;
     m.y = wi.y + wo.y;
     m.z = wi.z + wo.z;
     l2 = m.x * m.x + m.y * m.y + m.z * m.z;
     c = (wi.x * m.x + wi.y * m.y + wi.z * m.z) / aspi_sqrt(l2 > 0.0 ? l2 : 1.0);
-    mirror = asp_mirror(&mat->ndf, mat->mask);
-    x = asp_eval(&mirror, wi, wo).r;
+    other = asp_mirror(&mat->ndf, mat->mask);
+    x = asp_eval(&other, wi, wo).r;
     for (i = 0; i < n; i++)
         out[i] = x * aspi_fresnel_conductor(c, eta[i], k[i]);
+    return ASP_OK;
 }
