@@ -262,7 +262,7 @@ ASP_FN asp_sampled nothing_of(asp_v3 wi, asp_real nothing)
 }
 
 /* A visible normal, then reflection or refraction by F. What single scattering loses, light into the surface
- * again, has density and weight 0. */
+ * again, has density and weight 0; by facets too steep for a density it is 0 alone. */
 ASP_FN asp_sampled sample_as(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3, int mask)
 {
     const asp_shape *shape = &mat->ndf;
@@ -289,7 +289,7 @@ ASP_FN asp_sampled sample_as(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_rea
     }
     out.wo = lengthened(wo, sign);
     out.pdf = up <= R(0.0) ? R(0.0) : s.pdf;
-    weight = out.pdf <= R(0.0) ? R(0.0) : weight;
+    weight = up <= R(0.0) ? R(0.0) : weight;
     out.weight.r = out.weight.g = out.weight.b = weight;
     return out;
 }
@@ -312,7 +312,7 @@ static asp_sampled sample_thin(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_r
     wo = aspi_vector(s.wo_x, s.wo_y, s.wo_z);
     weight = staying_weight(shape, v, wo, s.sigma_i, s.sigma_o, aspi_sqrt(aspi_above(s.m_z2)), c, mat->mask);
     out.pdf = wo.z <= R(0.0) ? R(0.0) : share * s.pdf;
-    weight = out.pdf <= R(0.0) ? R(0.0) : weight;
+    weight = wo.z <= R(0.0) ? R(0.0) : weight;
     out.wo = aspi_turned(lengthened(wo, R(1.0)), u3 >= F ? -sign : sign, 1);
     out.weight.r = out.weight.g = out.weight.b = weight;
     return out;
@@ -501,7 +501,7 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
         w = crossing_weight(si[i], inverse_of(v.z), index_of(wz[i], above, below)) * G2[i];
         stay = staying_weight(shape, v, wo, si[i], so[i], R(0.0), R(0.0), 0);
         w = aspi_select(crosses, w, stay);
-        w = aspi_select(lost | (d <= R(0.0)), nothing, w);
+        w = aspi_select(lost, nothing, w);
         px[i] = aspi_select(stop, -wx[i], to.x);
         py[i] = aspi_select(stop, -wy[i], to.y);
         pz[i] = aspi_select(stop, -wz[i], to.z);
