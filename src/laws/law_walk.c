@@ -73,8 +73,8 @@ static asp_vec3 propose(aspi_trial *t, const asp_material *mat, asp_vec3 wi, int
     return wo;
 }
 
-/* Distributions whose D has a pole at the horizon (Student's t below gamma = 2) give estimates of infinite
- * variance: their walks are right, but no number of samples shows that eval is. */
+/* Distributions whose D rises towards the horizon (Student's t below gamma = 1.9) give estimates of large or, with a
+ * pole there (below 1.75), infinite variance: their walks are right, but samples do not show that eval is. */
 static int has_pole(const asp_ndf *ndf)
 {
     for (int i = 0; i < 8; i++) {
