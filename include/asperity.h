@@ -512,6 +512,10 @@ void asp_sample_nf(const asp_materialf *mat, size_t n, asp_cvec3sf wi, const flo
  * which reflect and refract like facets, so that nothing is lost. Materials: conductor, dielectric (not
  * thin: 0) and rough_diffuse. Uniform numbers come from a stream, because no walk's length is known. */
 
+/* 1 where a walk is of this material: else (a form of rough_diffuse by name included, whose facets are not known)
+ * what the calls below give is not the material's. */
+int asp_can_walk(const asp_material *mat);
+
 /* A number in [0, 1), each time another. */
 typedef double asp_uniforms(void *state);
 

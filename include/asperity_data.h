@@ -375,19 +375,25 @@ typedef struct asp_laws_options {
     const char *only;       /* the name of one law, or NULL for all */
     int      sparse;        /* 1: of the views and materials that the samplers' laws try a third, which one the
                                distribution decides: for runs over many distributions */
+    const asp_material *material;   /* NULL: materials of every kind over the distribution; else just this one, as
+                               it is, over its own distribution, by the laws that speak of materials */
     asp_progress *progress; /* may be NULL */
     void    *context;       /* of progress */
 } asp_laws_options;
 
-/* 100,000 samples, seed 1, all laws, not sparse, no progress. */
+/* 100,000 samples, seed 1, all laws, not sparse, no material, no progress. */
 asp_laws_options asp_laws_options_default(void);
 
 /* Called once per law. The result is valid during the call. */
 typedef void asp_law_report(void *context, const asp_law_result *result);
 
+/* Does a law speak of materials, too? Those are the ones that asp_laws_options.material is tried by. */
+int asp_law_of_materials(const asp_law *law);
+
 /* Checks one distribution; about half a second with the default options. options and report may be
- * NULL; failed (may be NULL) is the number of laws broken. ASP_OK also when laws are broken.
- * ASP_EINVAL (samples), ASP_EUNKNOWN (only), ASP_ENOMEM, ASP_ECANCELLED. */
+ * NULL, and ndf is not looked at where there is a material; failed (may be NULL) is the number of laws
+ * broken. ASP_OK also when laws are broken.
+ * ASP_EINVAL (samples; a law that does not speak of materials), ASP_EUNKNOWN (only), ASP_ENOMEM, ASP_ECANCELLED. */
 asp_status asp_laws_check(const asp_ndf *ndf, const asp_laws_options *options,
                           asp_law_report *report, void *context, size_t *failed, asp_error *err);
 

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 """The command on scattering models: energy, walks, dielectrics from both sides, pictures of them."""
 import math
+import json
 import os
+import pty
 import struct
+import subprocess
 
-from cli import check, near, rows, run, run_sections
+from cli import COMMAND, check, near, rows, run, run_sections
 
 # Light kept by single scattering of mirror facets, percent, at roughness 0.1 ... 1 (computed with 12 digits
 # outside this library): separable and height-correlated masking.
@@ -44,7 +47,7 @@ def energy_values():
     # over angles: along the normal nothing is masked once; a half mirror gives half
     full = rows(run("energy", "ggx:alpha=0.2", "--angles", "4", status=0).stdout)
     half = rows(run("energy", "conductor:f0=0.5,tint=1,ndf=(ggx:alpha=0.0001)", "--angles", "4", status=0).stdout)
-    check([row["theta"] for row in full] == ["0", "30", "60", "90"], "angles of energy")
+    check([row["theta"] for row in full] == ["0", "30", "60", "89.99"], "angles of energy")
     check(near(float(half[0]["albedo_r"]), 0.5, 1e-4), "a half mirror: %s" % half[0]["albedo_r"])
     grey = 0.5 + 0.5 * (1 - math.cos(math.radians(60))) ** 5
     check(near(float(half[2]["albedo_r"]), grey, 1e-4), "Schlick at 60 degrees: %s" % half[2]["albedo_r"])
@@ -116,6 +119,143 @@ def models():
         run("sample", "brdf", "--material", spec, "--wi", "0.6,0,-0.8", status=2, says=["-0.8", "(0, 1]"])
 
 
+def energy_shares():
+    """What crosses is counted as energy, unless the spec asks for radiance."""
+    def albedo(spec, *words):
+        return [float(row["albedo_g"]) for row in rows(run("energy", spec, "--angles", "2", "-n", "4096", *words,
+                                                           status=0).stdout)]
+    for spec in ("dielectric:ndf=(ggx:alpha=0.01)", "dielectric:eta=0.5,ndf=(ggx:alpha=0.01)",
+                 "dielectric:thin=1,ndf=(ggx:alpha=0.01)", "compensated_dielectric:ndf=(ggx:alpha=0.1)"):
+        head, tail = spec.split(":", 1)
+        given = albedo("%s:transport=importance,%s" % (head, tail))
+        check(albedo(spec) == given and 0.95 < given[0] < 1.01, "%s: %r of energy" % (spec, given))
+    radiance = albedo("dielectric:ndf=(ggx:alpha=0.01),transport=radiance")[0]
+    check(near(radiance, 0.04 + 0.96 / 2.25, 1e-2), "radiance through glass: %g" % radiance)
+
+
+def energy_masks():
+    """--mask is that of the spec, for tables too."""
+    def both(material, ndf, mask, *words):
+        spec = "%s,%%sndf=(%s)" % (material, ndf)
+        outer = run("energy", spec % "", "--mask", mask, *words, "-n", "8192", status=0).stdout
+        other = run("energy", spec % "", *words, "-n", "8192", status=0).stdout
+        inner = run("energy", spec % ("mask=%s," % mask), *words, "-n", "8192", status=0).stdout
+        got = [[{k: v for k, v in row.items() if k != "spec"} for row in rows(text)] for text in (outer, inner, other)]
+        check(got[0] == got[1], "%s: --mask %s: %r, in the spec %r" % (material, mask, got[0], got[1]))
+        check(got[0] != got[2], "%s: --mask %s changes nothing" % (material, mask))
+        return [float(row["albedo_g"]) for row in got[0]]
+    value = both("compensated:f0=1", "ggx:alpha={}", "uncorrelated", "--over", "0.5:2:2")
+    check(all(abs(a - 1) < 4e-3 for a in value), "light given back with --mask: %r" % value)
+    both("plastic:albedo=1,eta=3", "ggx:alpha=1", "v_cavity", "--angles", "3")
+    both("compensated_dielectric:eta=1.5", "ggx:alpha=0.7", "uncorrelated", "--angles", "3")
+    # the spec's own mask is overruled as well
+    run("energy", "compensated:f0=1,mask=v_cavity,ndf=(ggx:alpha=1)", "--mask", "correlated", "--angles", "2", status=0)
+
+
+def energy_of_data():
+    """Distributions that are data stand where a bare distribution does."""
+    table = "tabulated:slopes=0/0.1/0.3/0.6,density=5/4/1/0.2"
+    with open("slopes.csv", "w") as file:
+        file.write("p_x,p_y,weight\n" + "".join("%g,%g,1\n" % (math.sin(i) * 0.3, math.cos(1.7 * i) * 0.2) for i in range(400)))
+    for spec in (table, "histogram:file=slopes.csv,bins=8"):
+        bare, inside = (rows(run("energy", text, "--angles", "3", "-n", "1024", status=0).stdout)
+                        for text in (spec, "conductor:f0=1,tint=1,ndf=(%s)" % spec))
+        check(all(near(float(a["albedo_g"]), float(b["albedo_g"]), 1e-9) for a, b in zip(bare, inside)),
+              "%s: bare %r, in a mirror %r" % (spec, bare, inside))
+    # a material over a file has the tables of that file
+    one = rows(run("energy", "compensated:f0=1,ndf=(histogram:file=slopes.csv,bins=8)", "--over", "0:1:1", "-n", "4096",
+                   status=2, says=["{}"]).stdout)
+    one = rows(run("energy", "compensated:f0=1,ndf=(histogram:file=slopes.csv,bins=8)", "--angles", "3", "-n", "4096",
+                   status=0).stdout)
+    check(all(abs(float(row["albedo_g"]) - 1) < 0.05 for row in one), "light given back over a file: %r" % one)
+    run("energy", "gxx:alpha=0.1", status=2, says=["unknown distribution or material 'gxx'", "'ggx'"])
+    run("energy", "conducter:ndf=(ggx)", status=2, says=["unknown distribution or material", "'conductor'"])
+
+
+def no_walks():
+    """What cannot walk is refused before there is any work."""
+    for name in ("plastic:ndf=(ggx)", "dielectric:thin=1,ndf=(ggx)", "compensated:f0=1,ndf=(ggx)",
+                 "lambert_specular:ndf=(ggx)", "compensated_dielectric:ndf=(ggx)", "rough_diffuse:form=eon,ndf=(ggx)",
+                 "rough_diffuse:form=oren_nayar,ndf=(ggx)", "rough_diffuse:form=fujii,ndf=(ggx)"):
+        says = ["--walk: " + name.split(":")[0], "conductor", "dielectric (a half space)", "rough_diffuse (exact)"]
+        run("energy", name, "--walk", status=2, says=says)
+        run("render", "--material", name, "--walk", "--size", "8", "--spp", "1", "-o", "x.png", status=2, says=says)
+    check(os.listdir(".") == [], "left behind: %s" % os.listdir("."))
+    for name in ("conductor:metal=Cu,ndf=(ggx)", "dielectric:ndf=(ggx)", "rough_diffuse:form=exact,ndf=(ggx)"):
+        run("render", "--material", name, "--walk", "--size", "4", "--spp", "1", "-o", "x.pfm", status=0)
+
+
+def check_materials():
+    """`check --material`: laws of the material itself."""
+    def laws(spec, *words, status=0):
+        done = run("check", "--material", spec, "--json", "--samples", "4000", *words)
+        check(done.returncode == status and not done.stderr, "%s: exit status %d" % (spec, done.returncode))
+        found = json.loads(done.stdout)
+        check(found["holds"] == (status == 0) and len(found["results"]) == 1, spec + ": one result")
+        check(found["results"][0]["material"] == spec, spec + ": named")
+        return {law["law"]: law for law in found["results"][0]["laws"]}
+    always = {"furnace", "float32", "batch", "finite", "nan"}
+    for spec in MODELS + ["dielectric:eta=0.7,transport=importance,mask=wall,ndf=(beckmann:alpha=0.3,mean_x=0.2)",
+                          "conductor:metal=Au,mask=uncorrelated,ndf=(tabulated:slopes=0/0.1/0.3/0.6,density=5/4/1/0.2)"]:
+        if spec.startswith("compensated_dielectric:form=turquin"):
+            continue
+        want = set(always)
+        want |= {"refraction", "sample_materials"} if "dielectric" in spec else {"weight", "sample_bsdf", "weight_histogram"}
+        want |= set() if "turquin" in spec else {"reciprocity"} | ({"adjoint"} if "dielectric" in spec else set())
+        if spec.split(":")[0] in ("conductor", "dielectric", "rough_diffuse") and "form=" not in spec and "thin" not in spec:
+            want.add("walk")
+        got = laws(spec)
+        check(set(got) == want, "%s: laws %s, not %s" % (spec, sorted(got), sorted(want)))
+    # more light than came
+    broken = laws("lambert_specular:diffuse=0.9,specular=1,f0=0.9,ndf=(ggx:alpha=0.3)", status=1)
+    check([name for name in broken if not broken[name]["holds"]] == ["furnace"], "too bright: %r" % broken)
+    one = laws(GLASS, "--law", "adjoint")
+    check(list(one) == ["adjoint"] and one["adjoint"]["checks"] > 100, "one law of glass: %r" % one)
+    text = run("check", "--material", GLASS, "--law", "walk", "ggx:alpha=0.3", status=0).stdout
+    check(GLASS in text and "\nggx:alpha=0.3\n" in text and "all laws hold" in text, "both at once: " + text)
+    run("check", "--material", GLASS, "--law", "sigma", status=2, says=["--law sigma", "--material"])
+    run("check", "--material", GLASS, "--model", "ggx", status=2, says=["--model", "--material"])
+    run("check", "--material", "dielectric:eta=-1,ndf=(ggx)", status=2, says=["--material", "eta = -1"])
+    run("check", "--material", "ggx", status=2, says=["--material ggx", "unknown material"])
+    run("check", GLASS, status=2, says=["--material"])
+
+
+def on_terminal(*words):
+    """What a terminal on standard error sees."""
+    reader, writer = pty.openpty()
+    done = subprocess.Popen([COMMAND, *words], stderr=writer, stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+    os.close(writer)
+    seen = b""
+    while True:
+        try:
+            part = os.read(reader, 4096)
+        except OSError:
+            break
+        if not part:
+            break
+        seen += part
+    os.close(reader)
+    check(done.wait() == 0, "asperity %s on a terminal" % " ".join(words))
+    return seen.decode()
+
+
+def bars():
+    """One bar from 0 to 100 % over all of the work."""
+    def percents(seen, label):
+        parts = [p for p in seen.split("\r") if p.startswith(label + " [")]
+        return [int(p.split("]")[1].split("%")[0]) for p in parts]
+    # as much work as takes a second or two anywhere
+    seen = percents(on_terminal("energy", *["student_t:alpha=0.3,gamma=%d" % g for g in (2, 3, 4)], "-n", "200000",
+                                "--angles", "6"), "energy")
+    check(len(seen) > 3 and seen == sorted(seen) and seen[0] < 40, "the bar of energy: %r" % seen)
+    made = on_terminal("sample", "brdf", "--ndf", "ggx:alpha=0.3", "--wi", "30,0", "-n", "300000", "-o", "made.csv")
+    seen = percents(made, "sample")
+    check(len(seen) > 2 and seen == sorted(seen), "the bar of sample: %r" % seen)
+    check(made.endswith("\r\033[K"), "the bar of sample stays")
+    seen = percents(on_terminal("eval", "brdf_cos", "made.csv", "--ndf", "ggx:alpha=0.3", "-o", "full.csv"), "eval")
+    check(len(seen) > 2 and seen == sorted(seen), "the bar of eval: %r" % seen)
+
+
 def read_pfm(name):
     with open(name, "rb") as file:
         check(file.readline().strip() == b"PF", name + ": no colour PFM")
@@ -157,4 +297,5 @@ def pictures():
         check(a.read() == b.read(), "the picture of a walk depends on the threads")
 
 
-run_sections([energy_values, energy_walks, energy_refusals, models, pictures])
+run_sections([energy_values, energy_walks, energy_refusals, energy_shares, energy_masks, energy_of_data, no_walks,
+              models, check_materials, bars, pictures])

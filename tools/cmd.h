@@ -101,6 +101,8 @@ int cmd_ndf(const cmd_args *args, const char *option, size_t index, asp_ndf *out
 /* asp_ndf_read; what the value stands on is kept until the command ends. */
 asp_status cmd_read_ndf(const char *spec, asp_ndf *out, asp_error *err);
 int cmd_material(const cmd_args *args, const char *option, size_t index, asp_material *out);
+/* For an option `walk`: can light walk on it? CMD_OK, or CMD_USAGE with the material and those that can named. */
+int cmd_can_walk(const asp_material *material);
 int cmd_direction(const cmd_args *args, const char *option, asp_vec3 *out);
 int cmd_mask(const cmd_args *args, const char *option, int *out);
 /* The same for the options ndf, material and mask of one record: a material, or the perfect mirror
@@ -176,6 +178,8 @@ typedef struct cmd_progress {
 } cmd_progress;
 
 cmd_progress cmd_progress_begin(const char *label);
+/* The same while rows are written: none where they go to the terminal themselves. */
+cmd_progress cmd_progress_beside(const cmd_out *out, const char *label);
 int  cmd_progress_show(void *progress, double done);
 void cmd_progress_end(cmd_progress *progress);    /* wipes the bar away */
 

@@ -5,6 +5,7 @@
  * eight is the error. */
 #include "cmd.h"
 #include "asperity_ndf.h"
+#include "bsdf/bsdf.h"
 #include "core/rng.h"
 
 #include <math.h>
@@ -13,6 +14,7 @@
 
 #define SHIFTS 8
 #define MOST 4096
+#define GRAZING 89.99 /* along the surface nothing arrives */
 #define PI 3.14159265358979323846
 
 typedef struct albedo { double r, g, b, error; } albedo;
@@ -40,8 +42,17 @@ static asp_rgb weight_of(const asp_material *mat, asp_vec3 wi, double u1, double
     return walk ? asp_walk_sample(mat, wi, next_uniform, s).weight : asp_sample(mat, wi, u1, u2).weight;
 }
 
+/* All directions of all specs, for one bar. */
+typedef struct work { cmd_progress bar; double done, all; } work;
+
+static void tick(work *w, size_t i)
+{
+    if (i % 1024 == 0)
+        cmd_progress_show(&w->bar, (w->done + (double)i) / w->all);
+}
+
 /* Directional albedo, or with theta < 0 that of white light from the whole hemisphere. */
-static albedo albedo_of(const asp_material *mat, double theta, double phi, size_t n, int walk)
+static albedo albedo_of(const asp_material *mat, double theta, double phi, size_t n, int walk, work *w)
 {
     double sum[SHIFTS][3], mean = 0, spread = 0;
     albedo out = { 0, 0, 0, 0 };
@@ -55,11 +66,13 @@ static albedo albedo_of(const asp_material *mat, double theta, double phi, size_
                 a = 2 * PI * lattice(i, k, 3);
             }
             double s = sqrt(fmax(0, 1 - c * c));
-            asp_rgb w = weight_of(mat, (asp_vec3){ s * cos(a), s * sin(a), c }, u1, u2, walk, &random);
-            sum[k][0] += w.r / (double)n;
-            sum[k][1] += w.g / (double)n;
-            sum[k][2] += w.b / (double)n;
+            asp_rgb got = weight_of(mat, (asp_vec3){ s * cos(a), s * sin(a), c }, u1, u2, walk, &random);
+            sum[k][0] += got.r / (double)n;
+            sum[k][1] += got.g / (double)n;
+            sum[k][2] += got.b / (double)n;
+            tick(w, i);
         }
+        w->done += (double)n;
         out.r += sum[k][0] / SHIFTS;
         out.g += sum[k][1] / SHIFTS;
         out.b += sum[k][2] / SHIFTS;
@@ -120,31 +133,45 @@ static void write_table(const cmd_args *args, const char *spec, const table *t, 
     }
 }
 
-static int measure(const cmd_args *args, const char *spec, int over, double low, double high, int n, table *t,
-                   cmd_progress *bar)
+/* A share of energy: what crosses is not scaled by 1/eta^2, as radiance is, unless the spec says so. */
+static int read_surface(const cmd_args *args, const char *spec, asp_material *mat)
 {
-    size_t samples = (size_t)cmd_integer(args, "samples") / SHIFTS + 1;
+    aspi_spec cut;
+    int status = cmd_surface_spec(args, spec, mat);
+    if (status == CMD_OK && aspi_bsdf_crosses(mat->model)
+        && aspi_spec_cut(spec, strlen(spec), &cut, NULL) == ASP_OK && !aspi_spec_find(&cut, "transport"))
+        mat->transport = ASP_IMPORTANCE;
+    return status == CMD_OK && cmd_given(args, "walk") ? cmd_can_walk(mat) : status;
+}
+
+static size_t per_shift(const cmd_args *args) { return (size_t)cmd_integer(args, "samples") / SHIFTS + 1; }
+
+static int measure(const cmd_args *args, const char *spec, int over, double low, double high, int n, table *t,
+                   work *w)
+{
+    size_t samples = per_shift(args);
     double phi = cmd_number(args, "phi") * PI / 180;
     char filled[512];
     asp_material mat;
     for (int i = 0; i < n; i++) {
         row *r = &t->rows[i];
         double x = n > 1 ? low + (high - low) * i / (n - 1) : low;
-        double theta = over ? -1 : fmin(x, 89.99) * PI / 180;
+        double theta;
         int status;
         if (!fill(spec, x, filled, sizeof filled))
             return cmd_usage("%s: too long", spec);
+        x = over ? x : fmin(x, GRAZING);
+        theta = over ? -1 : x * PI / 180;
         if (over || i == 0) {
-            status = cmd_surface_spec(args, filled, &mat);
+            status = read_surface(args, filled, &mat);
             if (status != CMD_OK)
                 return status;
         }
         r->x = x;
-        r->single = albedo_of(&mat, theta, phi, samples, 0);
+        r->single = albedo_of(&mat, theta, phi, samples, 0, w);
         if (cmd_given(args, "walk"))
-            r->walk = albedo_of(&mat, theta, phi, samples, 1);
+            r->walk = albedo_of(&mat, theta, phi, samples, 1, w);
         t->count++;
-        cmd_progress_show(bar, (double)(i + 1) / n);
     }
     return CMD_OK;
 }
@@ -203,13 +230,14 @@ static int run(const cmd_args *args)
     for (size_t k = 0; k < count && over; k++)
         if (!strstr(cmd_operand(args, k), "{}"))
             return cmd_usage("%s: --over needs {} where the number goes", cmd_operand(args, k));
-    cmd_progress bar = cmd_progress_begin("energy");
+    work w = { cmd_progress_begin("energy"), 0,
+               (double)count * n * SHIFTS * (double)per_shift(args) * (1 + (cmd_given(args, "walk") > 0)) };
     for (size_t k = 0; k < count && status == CMD_OK; k++) {
         tables[k].rows = calloc((size_t)n, sizeof *tables[k].rows);
-        status = tables[k].rows ? measure(args, cmd_operand(args, k), over, low, high, n, &tables[k], &bar)
+        status = tables[k].rows ? measure(args, cmd_operand(args, k), over, low, high, n, &tables[k], &w)
                                 : cmd_failed("not enough memory");
     }
-    cmd_progress_end(&bar);
+    cmd_progress_end(&w.bar);
     if (status == CMD_OK && svg)
         status = draw(args, tables, count, over, path);
     else if (status == CMD_OK && (status = cmd_out_open(&out, path)) == CMD_OK) {
@@ -229,7 +257,7 @@ static int run(const cmd_args *args)
 }
 
 static const cmd_option options[] = {
-    { "angles",  0,   "N",    CMD_INTEGER, 2, MOST, .initial = "10", .help = "rows from 0 to 90 degrees" },
+    { "angles",  0,   "N",    CMD_INTEGER, 2, MOST, .initial = "10", .help = "rows from 0 to 90 degrees, of which the last is 89.99" },
     { "phi",     0,   "DEG",  CMD_NUMBER, -360, 360, .initial = "0", .help = "azimuth of wi" },
     { "over",    0,   "LOW:HIGH:N", CMD_TEXT, .help = "white light from everywhere, over the number in {}" },
     { "walk",    0,   NULL,   CMD_FLAG, .help = "multiple scattering beside it (conductor, dielectric, rough_diffuse)" },
@@ -244,7 +272,9 @@ const cmd_record cmd_energy = {
     "A SPEC is a distribution, whose facets are perfect mirrors then, or a\n"
     "material. Directional albedo over theta; with --over the albedo of white\n"
     "light from everywhere over a number that stands as {} in the SPEC. `error`\n"
-    "is the standard error of the green albedo.\n\n"
+    "is the standard error of the green albedo. Of a material that light crosses it\n"
+    "is the share of energy on both sides (transport=importance) unless the SPEC has\n"
+    "a transport: radiance is scaled by 1/eta^2 on the way, and its sum is no share.\n\n"
     "  asperity energy ggx:alpha=0.5 conductor:metal=Au,ndf=(ggx:alpha=0.5)\n"
     "  asperity energy 'student_t:alpha={},gamma=2' --over 0.1:1:10 --walk",
     options, run

@@ -245,6 +245,9 @@ static int eval_rows(const job *work, csv *table, const layout *where, block64 *
     size_t rows = 0;
     int status = kept ? CMD_OK : cmd_failed("out of memory");
     csv_row got = CSV_END;
+    cmd_progress bar = cmd_progress_beside(out, "eval");
+    if (csv_done(table) < 0)
+        bar.shown = 0;
     while (status == CMD_OK && (got = csv_next(table)) != CSV_END) {
         if (got == CSV_BROKEN)
             status = CMD_FAILED;
@@ -255,12 +258,15 @@ static int eval_rows(const job *work, csv *table, const layout *where, block64 *
         if (status == CMD_OK && (rows == BLOCK || kept->count == 2 * BLOCK)) {
             finish_block(work, where, table->separator, b, bf, kept, rows, out);
             rows = 0;
+            if (bar.shown)
+                cmd_progress_show(&bar, csv_done(table));
             if (cmd_out_broken(out))
                 break;
         }
     }
     if (status == CMD_OK && !cmd_out_broken(out))
         finish_block(work, where, table->separator, b, bf, kept, rows, out);
+    cmd_progress_end(&bar);
     free(kept ? kept->text : NULL);
     free(kept);
     return status;

@@ -85,6 +85,8 @@ static int run(const cmd_args *args)
     } else {
         status = cmd_surface(args, &material);
         look.material = &material;
+        if (status == CMD_OK && look.walk)
+            status = cmd_can_walk(&material);
     }
     if (status == CMD_OK)
         status = cmd_out_check(cmd_text(args, "output"));

@@ -114,6 +114,7 @@ static void write_row(const struct form *form, const block64 *b, size_t i, int d
 static void draw_all(const job *work, block64 *b, block32 *bf, uint64_t count, cmd_out *out)
 {
     const struct form *form = &forms[work->what];
+    cmd_progress bar = cmd_progress_beside(out, "sample");
     cmd_out_write(out, form->header, strlen(form->header));
     for (uint64_t first = 0; first < count && !cmd_out_broken(out); first += BLOCK) {
         size_t n = count - first < BLOCK ? (size_t)(count - first) : BLOCK;
@@ -127,7 +128,9 @@ static void draw_all(const job *work, block64 *b, block32 *bf, uint64_t count, c
         }
         for (size_t i = 0; i < n; i++)
             write_row(form, b, i, bf ? 9 : 17, out);
+        cmd_progress_show(&bar, (double)(first + n) / (double)count);
     }
+    cmd_progress_end(&bar);
 }
 
 static int make_sampler(const cmd_args *args, job *work)

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static int is_blank(char c) { return c == ' ' || c == '\t'; }
 
@@ -188,4 +189,13 @@ void csv_close(csv *table)
     if (table->file && table->file != stdin)
         fclose(table->file);
     memset(table, 0, sizeof *table);
+}
+
+double csv_done(const csv *table)
+{
+    struct stat about;
+    off_t at = ftello(table->file);
+    if (at < 0 || fstat(fileno(table->file), &about) || !S_ISREG(about.st_mode) || about.st_size <= 0)
+        return -1;
+    return (double)at / (double)about.st_size;
 }

@@ -27,6 +27,8 @@ int  csv_open(csv *table, const char *path, cmd_out *aside);
 /* The next line: CSV_CELLS with the header's number of cells, CSV_ASIDE (empty or a comment),
  * CSV_END, or CSV_BROKEN with the error printed. */
 csv_row csv_next(csv *table);
+/* How much of the file is read, in [0, 1]; -1 where its size is not known (a pipe). */
+double csv_done(const csv *table);
 /* Index of a column, -1 if none. */
 int  csv_find(const csv *table, const char *name);
 /* The numbers in the cells `wanted[0..count)` of the line. 0, or 1 and the error

@@ -277,6 +277,13 @@ cmd_progress cmd_progress_begin(const char *label)
     return progress;
 }
 
+cmd_progress cmd_progress_beside(const cmd_out *out, const char *label)
+{
+    cmd_progress progress = cmd_progress_begin(label);
+    progress.shown &= !(out->standard && isatty(STDOUT_FILENO));
+    return progress;
+}
+
 int cmd_progress_show(void *context, double done)
 {
     enum { CELLS = 32 };

@@ -7,15 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Names of distributions, materials and metals; `at_start` leaves those that a spec begins with. */
+/* Names of distributions, materials and metals (option ndf, material, or surface for either); `at_start` leaves those that a spec begins with. */
 static void known_names(const char *option, int at_start, const char *names[128])
 {
     size_t used = 0, metals;
-    int material = strcmp(option, "material") == 0;
+    int material = strcmp(option, "ndf") != 0, either = strcmp(option, "surface") == 0;
     const asp_metal *metal = asp_metals(&metals);
     for (const asp_bsdf *const *b = asp_bsdfs(); material && *b && used < 127; b++)
         names[used++] = (*b)->name;
-    for (const asp_model *const *m = asp_models(); (!material || !at_start) && *m && used < 127; m++)
+    for (const asp_model *const *m = asp_models(); (!material || either || !at_start) && *m && used < 127; m++)
         names[used++] = (*m)->name;
     for (size_t i = 0; !at_start && material && i < metals && used < 127; i++)
         names[used++] = metal[i].name;
@@ -34,7 +34,8 @@ static int bad_value(const char *given, const char *option, const char *text, co
         known_names(option, at_start, names);
         if (at_start) {
             snprintf(what, sizeof what, "%s%s: unknown %s", given, text,
-                     strcmp(option, "ndf") ? "material" : "distribution");
+                     strcmp(option, "ndf") == 0 ? "distribution" : strcmp(option, "surface") ? "material"
+                     : "distribution or material");
             return cmd_unknown(what, err->name, names);
         }
         nearest = cmd_nearest(err->name, names);
@@ -105,8 +106,8 @@ static int read_ndf(const char *given, const char *spec, asp_ndf *out)
         return CMD_OK;
     if (from_file(&err))
         return cmd_error(&err);
-    if (err.status != ASP_EUNKNOWN || err.position != 0)
-        return bad_value(given, "ndf", spec, &err);
+    if (err.status != ASP_EUNKNOWN || err.position != 0 || !*given)
+        return bad_value(given, *given ? "ndf" : "surface", spec, &err);
     return cmd_bad_ndf(given, spec, &err);
 }
 
@@ -180,6 +181,17 @@ int cmd_direction(const cmd_args *args, const char *option, asp_vec3 *out)
     return CMD_OK;
 }
 
+/* What a material's tables hold depends on how it is masked. */
+static int set_mask(asp_material *out, int mask)
+{
+    asp_error err;
+    int same = out->mask == mask;
+    out->mask = mask;
+    if (same || !out->model->prepare || out->model->prepare(out, &err) == ASP_OK)
+        return CMD_OK;
+    return cmd_error(&err);
+}
+
 /* A material, or the perfect mirror facets of a distribution. */
 static int read_surface(const cmd_args *args, const char *given, int is_ndf, const char *spec, asp_material *out)
 {
@@ -194,17 +206,18 @@ static int read_surface(const cmd_args *args, const char *given, int is_ndf, con
     } else if (status == CMD_OK) {
         status = read_material(given, spec, out);
         if (status == CMD_OK && masked)
-            out->mask = mask;
+            status = set_mask(out, mask);
     }
     return status;
 }
 
 int cmd_surface_spec(const cmd_args *args, const char *spec, asp_material *out)
 {
-    char name[64];
     size_t length = strcspn(spec, ":");
-    snprintf(name, sizeof name, "%.*s", (int)(length < 63 ? length : 63), spec);
-    return read_surface(args, "", asp_find_model(NULL, name) != NULL, spec, out);
+    int scatters = 0; /* distributions are many: those made of data are in no list */
+    for (const asp_bsdf *const *b = asp_bsdfs(); *b; b++)
+        scatters |= strlen((*b)->name) == length && strncmp((*b)->name, spec, length) == 0;
+    return read_surface(args, "", !scatters, spec, out);
 }
 
 int cmd_surface_at(const cmd_args *args, const char *option, size_t index, asp_material *out)
@@ -222,4 +235,26 @@ int cmd_surface(const cmd_args *args, asp_material *out)
     if (ndfs + materials > 1)
         return cmd_usage("--ndf and --material: only one of them, once");
     return cmd_surface_at(args, ndfs ? "ndf" : "material", 0, out);
+}
+
+/* What is wrong with one of a kind that could walk. */
+static const char *not_walking(const asp_material *m)
+{
+    return m->model->facets == ASPI_FACETS_NONE ? "" : m->model->facets == ASPI_FACETS_REFRACT ? ":thin=1"
+         : " with an approximation by name";
+}
+
+int cmd_can_walk(const asp_material *material)
+{
+    char known[256] = "";
+    size_t used = 0;
+    if (asp_can_walk(material))
+        return CMD_OK;
+    for (const asp_bsdf *const *b = asp_bsdfs(); *b && used < sizeof known; b++)
+        if ((*b)->facets != ASPI_FACETS_NONE)
+            used += (size_t)snprintf(known + used, sizeof known - used, "%s%s%s", used ? ", " : "", (*b)->name,
+                                     (*b)->facets == ASPI_FACETS_REFRACT ? " (a half space)"
+                                     : (*b)->facets == ASPI_FACETS_DIFFUSE ? " (exact)" : "");
+    return cmd_usage("--walk: %s%s has no walk; those that have: %s", material->model->name, not_walking(material),
+                     known);
 }

@@ -194,6 +194,20 @@ int aspi_bsdf_crosses(const asp_bsdf *model)
     return key->name != NULL;
 }
 
+int asp_can_walk(const asp_material *mat)
+{
+    switch (mat->model->facets) {
+    case ASPI_FACETS_REFLECT:
+        return 1;
+    case ASPI_FACETS_REFRACT:
+        return !(mat->a.r > 0.0);      /* a thin sheet has no inside */
+    case ASPI_FACETS_DIFFUSE:
+        return mat->b.r == ROUGH_EXACT;
+    default:
+        return 0;
+    }
+}
+
 asp_status aspi_parse_transport(aspi_spec *spec, asp_material *out, asp_error *err)
 {
     aspi_item *item = aspi_spec_find(spec, "transport");

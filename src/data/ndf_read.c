@@ -4,7 +4,7 @@
  * map, and whatever stands around it is read by the core's own parser, through a record that has the map's
  * keys and no others. Positions in errors are those of the spec as it was given. */
 #include "asperity_ndf.h"
-#include "bsdf/spec.h"
+#include "bsdf/bsdf.h"
 #include "slopes.h"
 #include "surface/surface.h"
 
@@ -266,6 +266,8 @@ asp_status asp_material_read(const asp_model *const *models, const char *spec, a
         map = made.ndf.map;
         s = read_path(&r, &map, &made.ndf, memory, err);
     }
+    if (s == ASP_OK && made.model->prepare) /* over these slopes, not over the carrier's */
+        s = made.model->prepare(&made, err);
     if (s == ASP_OK)
         *out = made;
     release(&r);

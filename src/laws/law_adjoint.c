@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-/* Steps of rounding in eval: Fresnel's term takes the root of what is left of 1 next to total reflection. */
-static double steps_of(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double n)
+double aspi_facet_steps(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double n)
 {
     double k = wi.z * wo.z > 0 ? 1 : n, dot = aspi_dot(wi, wo);
     double apart = hypot(hypot(wi.x + k * wo.x, wi.y + k * wo.y), wi.z + k * wo.z);
@@ -26,20 +25,21 @@ static void compare(aspi_trial *t, const char *name, double found, double expect
 
 void aspi_law_adjoint(aspi_trial *t)
 {
-    for (int kind = ASPI_ONE_SIDED; kind < ASPI_ALL_MATERIALS; kind++) {
+    for (int kind = aspi_first(t, ASPI_ONE_SIDED); kind < aspi_end(t, ASPI_ALL_MATERIALS); kind++) {
         const char *name;
-        const asp_material *rad = aspi_material(t, kind, &name);
-        double eta = kind == ASPI_SHEET ? 1 : rad->c.r;
-        asp_material imp = *rad;
-        imp.transport = ASP_IMPORTANCE;
-        for (int i = 0; i < 300; i++) {
+        const asp_material *made = aspi_material(t, kind, &name);
+        aspi_traits is = aspi_traits_of(made);
+        double eta = is.eta;
+        asp_material radiance = *made, imp = aspi_importance(made), *rad = &radiance;
+        radiance.transport = ASP_RADIANCE;
+        for (int i = 0; i < 300 && is.crosses && is.reciprocal; i++) {
             asp_vec3 wi = aspi_random_direction(t), wo = aspi_random_direction(t);
             double n, side, steps, there, back;
             if (i % 3) /* a pair that shines */
                 wo = asp_sample_lobe(rad, wi, aspi_uniform(t), aspi_uniform(t), aspi_uniform(t)).wo;
             n = wi.z < 0 ? 1 / eta : eta;
             side = wi.z * wo.z < 0 ? n : 1;
-            steps = 1e-12 + 2 * steps_of(t, wi, wo, n);
+            steps = 1e-12 + 2 * aspi_facet_steps(t, wi, wo, n);
             if (!(steps < 1e-3) || wi.z == 0 || wo.z == 0)
                 continue;
             there = asp_eval(rad, wi, wo).r;

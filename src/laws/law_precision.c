@@ -195,7 +195,7 @@ static void batch_size(aspi_trial *t, const asp_shape *k, buffers *b, size_t n)
             check_scalar(t, name, n, i, s.z, b->c[i]);
         }
     }
-    for (kind = 0; kind < (n == 7 ? ASPI_ALL_MATERIALS : ASPI_MATERIALS); kind++) {
+    for (kind = aspi_first(t, 0); kind < aspi_end(t, n == 7 ? ASPI_ALL_MATERIALS : ASPI_MATERIALS); kind++) {
         const char *name;
         MATERIAL_TYPE mat = MATERIAL(t, kind, &name);
         for (q = 0; q < 2; q++) {
@@ -302,20 +302,21 @@ static void finite(aspi_trial *t, const asp_shape *k)
         expect_finite(t, "lambda", w[i].z < (asp_real)(ASP_PRECISION == 64 ? 1e-300 : 1e-35)
                       && lambda > 0 ? 0 : lambda, w[i], w[i]);
     }
-    for (kind = 0; kind < ASPI_ALL_MATERIALS; kind++) {
+    for (kind = aspi_first(t, 0); kind < aspi_end(t, ASPI_ALL_MATERIALS); kind++) {
         const char *name;
         MATERIAL_TYPE mat = MATERIAL(t, kind, &name);
+        aspi_traits is = aspi_traits_of(aspi_material(t, kind, &name));
         for (i = 0; i < DIRECTIONS; i++)
-            for (j = 0; j < DIRECTIONS; j += kind == ASPI_ROUGH_DIFFUSE ? 11 : kind < ASPI_MATERIALS ? 1 : 5)
+            for (j = 0; j < DIRECTIONS; j += is.quadrature ? 11 : kind < ASPI_MATERIALS || t->own ? 1 : 5)
                 finite_pair(t, k, &mat, w[i], w[j], mat.mask);
         /* all draw from the same normals: one material from everywhere, the others from an azimuth each */
-        for (i = kind % 3; i < DIRECTIONS; i += kind == ASPI_MIRROR ? 1 : 3)
+        for (i = t->own ? 0 : kind % 3; i < DIRECTIONS; i += kind == ASPI_MIRROR || t->own ? 1 : 3)
             for (a = 0; a < 6; a++)
                 for (b = 0; b < 6; b++) {
                     SAMPLE s = CALL(sample)(&mat, w[i], (asp_real)ends[a], (asp_real)ends[b]);
                     double size = (double)s.wo.x * s.wo.x + (double)s.wo.y * s.wo.y
                                 + (double)s.wo.z * s.wo.z;
-                    if (w[i].z <= 0 && (kind < ASPI_ONE_SIDED || w[i].z == 0))
+                    if (w[i].z <= 0 && (!is.crosses || w[i].z == 0))
                         size = 1; /* outside the domain: no direction is promised */
                     expect_finite(t, "sample pdf", s.pdf, w[i], s.wo);
                     expect_finite(t, "sample weight.r", s.weight.r, w[i], s.wo);
@@ -325,7 +326,8 @@ static void finite(aspi_trial *t, const asp_shape *k)
                               BITS_NAME, name, (double)s.wo.x, (double)s.wo.y, (double)s.wo.z,
                               (double)w[i].x, (double)w[i].y, (double)w[i].z, ends[a], ends[b]);
                 }
-        if (kind == ASPI_MIRROR || kind == ASPI_FILM || kind == ASPI_ROUGH_DIFFUSE || kind == ASPI_DIELECTRIC)
+        if (t->own ? is.walks : kind == ASPI_MIRROR || kind == ASPI_FILM || kind == ASPI_ROUGH_DIFFUSE
+                                || kind == ASPI_DIELECTRIC)
             for (i = 0; i < DIRECTIONS; i++)
                 finite_walk(t, &mat, w[i], w[(7 * i + 5) % DIRECTIONS]);
     }
@@ -379,9 +381,10 @@ static void nan_law(aspi_trial *t, const asp_shape *k)
         }
         if (i < 6)
             expect_nan(t, "pdf_visible", i, CALL(pdf_visible)(k, wi, wo));
-        for (kind = 0; kind < ASPI_ALL_MATERIALS; kind++) {
+        for (kind = aspi_first(t, 0); kind < aspi_end(t, ASPI_ALL_MATERIALS); kind++) {
             const char *name;
             MATERIAL_TYPE mat = MATERIAL(t, kind, &name);
+            aspi_traits is = aspi_traits_of(aspi_material(t, kind, &name));
             SAMPLE s;
             if (i < 6) {
                 expect_nan(t, "eval", i, CALL(eval)(&mat, wi, wo).r);
@@ -392,12 +395,13 @@ static void nan_law(aspi_trial *t, const asp_shape *k)
                 s = CALL(sample)(&mat, wi, (asp_real)(i == 3 ? NAN : 0.3),
                                  (asp_real)(i == 4 ? NAN : 0.3));
                 /* a diffuse lobe's direction does not depend on wi; its pdf and weight do */
-                if (kind < ASPI_MIXTURE || i > 2)
+                if (is.mirrors || i > 2)
                     expect_nan(t, "sample wo", i, s.wo.x + s.wo.y + s.wo.z);
                 expect_nan(t, "sample pdf", i, s.pdf);
                 expect_nan(t, "sample weight", i, s.weight.r);
             }
-            if (i < 3 && (kind == ASPI_MIRROR || kind == ASPI_ROUGH_DIFFUSE || kind == ASPI_DIELECTRIC)) {
+            if (i < 3 && (t->own ? is.walks : kind == ASPI_MIRROR || kind == ASPI_ROUGH_DIFFUSE
+                                              || kind == ASPI_DIELECTRIC)) {
                 expect_nan(t, "walk weight", i, CALL(walk_sample)(&mat, wi, walk_uniform, t).weight.r);
                 expect_nan(t, "walk eval_cos", i, CALL(walk_eval_cos)(&mat, wi, wo, walk_uniform, t).r);
                 expect_nan(t, "walk_pdf", i, CALL(walk_pdf)(&mat, wi, wo));

@@ -282,9 +282,17 @@ static void each_material(aspi_trial *t, int weights)
     static const int kinds[2] = { ASPI_MIRROR, ASPI_MIXTURE };
     asp_roughness five = asp_map_to_roughness(&t->ndf->map);
     size_t i, tests = 2 * t->view_count;
-    int k, count = five.alpha_x < 50 * five.alpha_y ? 2 : 1;
+    size_t stride = 1;
+    int k, wide = five.alpha_x < 50 * five.alpha_y, count = wide && !t->own ? 2 : 1;
+    if (t->own) {
+        aspi_traits is = aspi_traits_of(t->own);
+        tests = t->view_count;
+        stride = is.quadrature && weights ? 4 : 1;  /* a cell's integral is one of integrals */
+        if (is.crosses || (is.mixed && !wide))  /* what light crosses has a law of its own */
+            return;
+    }
     for (k = 0; k < count; k++)
-        for (i = 0; i < t->view_count; i++) {
+        for (i = 0; i < t->view_count; i += stride) {
             const char *name;
             sampling s = { 0 };
             double p;
@@ -292,7 +300,7 @@ static void each_material(aspi_trial *t, int weights)
                 continue;           /* or no facet to be seen */
             s.ndf = t->ndf;
             s.samples = t->samples;
-            s.mat = aspi_material(t, kinds[k], &name);
+            s.mat = aspi_material(t, t->own ? ASPI_OWN : kinds[k], &name);
             s.view = &t->views[i];
             s.horizon_only = weights;
             p = test_stream(t, &s, s.view->name);
@@ -318,35 +326,41 @@ void aspi_law_sample_materials(aspi_trial *t)
     };
     enum { CASES = sizeof cases / sizeof *cases };
     asp_roughness five = asp_map_to_roughness(&t->ndf->map);
-    for (int i = 0; i < CASES; i++)
+    int count = t->own ? 4 * (int)t->view_count : CASES;
+    if (t->own && !aspi_traits_of(t->own).crosses)
+        return;
+    for (int i = 0; i < count; i++)
         for (int weights = 0; weights < 2; weights++) {
-            int kind = cases[i].kind, mixed = kind == ASPI_PLASTIC || kind == ASPI_COMPENSATED
-                                           || kind == ASPI_COMPENSATED_DIELECTRIC;
-            aspi_view view = t->views[(size_t)(5 * i + 1) % t->view_count];
+            /* the caller's: from every view, on either side */
+            int kind = t->own ? ASPI_OWN : cases[i].kind;
+            int below = t->own ? i & 1 : cases[i].below, crossing = t->own ? i >> 1 & 1 : cases[i].crossing;
+            aspi_view view = t->views[t->own ? (size_t)i / 4 : (size_t)(5 * i + 1) % t->view_count];
             sampling s = { 0 };
             const char *name;
+            aspi_traits is;
             double p;
+            s.mat = aspi_material(t, kind, &name);
+            is = aspi_traits_of(s.mat);
             if (!aspi_taken(t, (size_t)(i + weights)) || !(asp_sigma(t->ndf, view.w) > 1e-150)
-                || (mixed && five.alpha_x >= 50 * five.alpha_y))
+                || (is.mixed && five.alpha_x >= 50 * five.alpha_y))
                 continue;
             s.ndf = t->ndf;
-            s.mat = aspi_material(t, kind, &name);
             s.view = &view;
             s.horizon_only = weights;
             s.samples = t->sparse ? t->samples / 2 : t->samples;     /* most are drawn one by one */
-            s.thin = kind == ASPI_SHEET;
-            s.crossing = cases[i].crossing;
-            s.eta = kind < ASPI_ONE_SIDED ? 0 : cases[i].below && !s.thin ? 1 / s.mat->c.r : s.mat->c.r;
-            if (cases[i].below) {
+            s.thin = is.thin;
+            s.crossing = crossing;
+            s.eta = !is.crosses ? 0 : below && !s.thin ? 1 / s.mat->c.r : s.mat->c.r;
+            if (below) {
                 view.w.z = -view.w.z;
                 view.w.x = s.thin ? view.w.x : -view.w.x;
                 view.w.y = s.thin ? view.w.y : -view.w.y;
             }
             p = test_stream(t, &s, name);
-            aspi_find(t, aspi_sidak(p, 2 * CASES), ALLOWED, "%s%s%s, %s, %s, p = %.3g of %zu samples", name,
-                      cases[i].below ? " from inside" : "", cases[i].crossing ? " across" : "", view.name,
+            aspi_find(t, aspi_sidak(p, 2 * (size_t)count), ALLOWED, "%s%s%s, %s, %s, p = %.3g of %zu samples", name,
+                      below ? " from inside" : "", crossing ? " across" : "", view.name,
                       weights ? "weights" : "counts", p, s.samples);
-            if (aspi_tick(t, (double)(i + 1) / CASES))
+            if (aspi_tick(t, (double)(i + 1) / count))
                 return;
         }
 }

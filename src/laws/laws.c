@@ -12,67 +12,67 @@
 
 static const aspi_law_row rows[] = {
     { { "normalisation", "the integral of D(m) m.z over facets is 1",
-        "Walter et al. 2007, eq. 4", "absolute" }, aspi_law_normalisation, 1 },
+        "Walter et al. 2007, eq. 4", "absolute" }, aspi_law_normalisation, 1, 0 },
     { { "slope_density", "P22 integrates to 1, and D = P22 / cos^4",
-        "Ribardiere et al. 2017, eq. 5", "relative" }, aspi_law_slope_density, 1 },
+        "Ribardiere et al. 2017, eq. 5", "relative" }, aspi_law_slope_density, 1, 0 },
     { { "mean_slope", "the mean of the slopes is the map's; the mean normal is (-mean, 1)",
-        "Walter et al. 2014, sec. 5", "relative to mean + roughness" }, aspi_law_mean_slope, 1 },
+        "Walter et al. 2014, sec. 5", "relative to mean + roughness" }, aspi_law_mean_slope, 1, 0 },
     { { "slope_map", "P22(M q + t) |det M| = P22 of the standard surface at q, round in q",
-        "p = M q + t", "relative" }, aspi_law_slope_map, 1 },
+        "p = M q + t", "relative" }, aspi_law_slope_map, 1, 0 },
     { { "rotation", "turning the map is turning the directions",
-        "p = M q + t", "relative" }, aspi_law_rotation, 1 },
+        "p = M q + t", "relative" }, aspi_law_rotation, 1, 0 },
     { { "matrix", "map -> A -> map, A^T A -> map and map -> five numbers -> map are one distribution",
-        "Walter et al. 2014, eqs. 1-3", "relative" }, aspi_law_matrix, 1 },
+        "Walter et al. 2014, eqs. 1-3", "relative" }, aspi_law_matrix, 1, 0 },
     { { "sigma", "sigma(w) is the integral of max(0, w.m) D, above and below the horizon",
-        "Heitz 2014, eq. 22; Walter et al. 2014, eq. 6", "relative" }, aspi_law_sigma, 4 },
+        "Heitz 2014, eq. 22; Walter et al. 2014, eq. 6", "relative" }, aspi_law_sigma, 4, 0 },
     { { "sigma_flip", "sigma(-w) = sigma(w) - (w.z - t.w_xy), and sigma >= 0",
-        "the two sides of one surface", "relative" }, aspi_law_sigma_flip, 1 },
+        "the two sides of one surface", "relative" }, aspi_law_sigma_flip, 1, 0 },
     { { "G1", "G1 = min(1, w.z/sigma) or w.z/(sigma + wall), Lambda = 1/G1 - 1, falls with the angle",
-        "Walter et al. 2014, eq. 6; Heitz 2014, eqs. 43, 71", "relative" }, aspi_law_G1, 1 },
+        "Walter et al. 2014, eq. 6; Heitz 2014, eqs. 43, 71", "relative" }, aspi_law_G1, 1, 0 },
     { { "G2", "G1 G1 <= correlated G2 <= min(G1, G1), the same both ways, 0 behind the facet",
-        "Heitz 2014, eqs. 72-99", "absolute" }, aspi_law_G2, 1 },
+        "Heitz 2014, eqs. 72-99", "absolute" }, aspi_law_G2, 1, 0 },
     { { "wall", "with walls the visible area is w.z exactly: (sigma + wall) front less back, G1 <= 1",
-        "Walter et al. 2014, sec. 5.1", "absolute" }, aspi_law_wall, 1 },
+        "Walter et al. 2014, sec. 5.1", "absolute" }, aspi_law_wall, 1, 0 },
     { { "pdf_normal", "the density of normals is D m.z",
-        "Walter et al. 2007, eq. 24", "relative" }, aspi_law_density_normal, 1 },
+        "Walter et al. 2007, eq. 24", "relative" }, aspi_law_density_normal, 1, 0 },
     { { "pdf_visible", "the density of visible normals is max(0, w.m) D / sigma; its integral is 1",
         "Heitz, d'Eon 2014, eq. 2; Walter et al. 2014, eq. 33", "relative" },
-      aspi_law_density_visible, 8 },
-    { { "reciprocity", "f(wi, wo) = f(wo, wi)", "Helmholtz", "relative" }, aspi_law_reciprocity, 2 },
-    { { "furnace", "a mirror surface in a white furnace returns at most what came",
-        "Heitz 2014, sec. 5.4", "albedo above 1" }, aspi_law_furnace, 20 },
+      aspi_law_density_visible, 8, 0 },
+    { { "reciprocity", "f(wi, wo) = f(wo, wi)", "Helmholtz", "relative" }, aspi_law_reciprocity, 2, 1 },
+    { { "furnace", "a surface in a white furnace returns at most what came",
+        "Heitz 2014, sec. 5.4", "albedo above 1" }, aspi_law_furnace, 20, 1 },
     { { "weak_furnace", "the integral of G1 D / (4 cos_i) over all wo is 1 where nothing is skewed",
-        "Heitz 2014, eq. 91", "absolute" }, aspi_law_weak_furnace, 4 },
+        "Heitz 2014, eq. 91", "absolute" }, aspi_law_weak_furnace, 4, 0 },
     { { "weight", "weight = f cos / pdf of the sample, never above 1 for a mirror surface",
-        "importance sampling", "relative" }, aspi_law_weight, 2 },
+        "importance sampling", "relative" }, aspi_law_weight, 2, 1 },
     { { "sample_normal", "sampled normals follow D m.z", "chi-square", "-log10 p" },
-      aspi_law_sample_normal, 6 },
+      aspi_law_sample_normal, 6, 0 },
     { { "sample_visible", "sampled visible normals follow their density", "chi-square", "-log10 p" },
-      aspi_law_sample_visible, 25 },
+      aspi_law_sample_visible, 25, 0 },
     { { "sample_bsdf", "sampled directions follow pdf", "chi-square", "-log10 p" },
-      aspi_law_sample_bsdf, 30 },
+      aspi_law_sample_bsdf, 30, 1 },
     { { "weight_histogram", "weights of samples add up to the integral of eval, cell by cell",
-        "chi-square of weight sums", "-log10 p" }, aspi_law_weight_histogram, 25 },
+        "chi-square of weight sums", "-log10 p" }, aspi_law_weight_histogram, 25, 1 },
     { { "sample_materials", "coats, films and glass: samples follow pdf, their weights add up to eval",
-        "chi-square", "-log10 p" }, aspi_law_sample_materials, 30 },
+        "chi-square", "-log10 p" }, aspi_law_sample_materials, 30, 1 },
     { { "refraction", "weight = f cos / pdf on both sides, in importance never above 1",
-        "Walter et al. 2007, sec. 5", "relative" }, aspi_law_refraction, 2 },
+        "Walter et al. 2007, sec. 5", "relative" }, aspi_law_refraction, 2, 1 },
     { { "adjoint", "f(wo, wi) n_i^2 = f(wi, wo) n_o^2, and importance is the adjoint of radiance",
-        "Veach 1997, sec. 5.2", "relative" }, aspi_law_adjoint, 2 },
-    { { "no_boundary", "a dielectric of index 1 is not there", "Snell", "absolute" }, aspi_law_no_boundary, 1 },
+        "Veach 1997, sec. 5.2", "relative" }, aspi_law_adjoint, 2, 1 },
+    { { "no_boundary", "a dielectric of index 1 is not there", "Snell", "absolute" }, aspi_law_no_boundary, 1, 0 },
     { { "limits", "no index: nothing bends; no roughness: a smooth boundary; gamma without end: Beckmann",
-        "Snell; Ribardiere et al. 2017, sec. 3", "absolute; relative" }, aspi_law_limits, 1 },
+        "Snell; Ribardiere et al. 2017, sec. 3", "absolute; relative" }, aspi_law_limits, 1, 0 },
     { { "walk", "walks without absorption return all light, and end where eval says",
-        "Heitz, Hanika, d'Eon, Dachsbacher 2016", "standard errors; albedo" }, aspi_law_walk, 20 },
+        "Heitz, Hanika, d'Eon, Dachsbacher 2016", "standard errors; albedo" }, aspi_law_walk, 20, 1 },
     { { "continuity", "samples are continuous in (u1, u2), and periodic or not, never jump",
-        "stratification survives", "absolute" }, aspi_law_continuity, 2 },
+        "stratification survives", "absolute" }, aspi_law_continuity, 2, 0 },
     { { "float32", "float32 agrees with float64 at the same float32 inputs",
-        "2e-6, and 1e-4 below 1e-6 of the peak", "relative" }, aspi_law_float32, 4 },
+        "2e-6, and 1e-4 below 1e-6 of the peak", "relative" }, aspi_law_float32, 4, 1 },
     { { "batch", "a batch gives the bits of the single calls", "asperity.h, section 8",
-        "differing results" }, aspi_law_batch, 2 },
+        "differing results" }, aspi_law_batch, 2, 1 },
     { { "finite", "finite unit vectors never give NaN or infinity, nor u at its ends",
-        "asperity.h", "bad results" }, aspi_law_finite, 2 },
-    { { "nan", "a NaN that comes in goes out", "asperity.h", "NaN lost" }, aspi_law_nan, 1 },
+        "asperity.h", "bad results" }, aspi_law_finite, 2, 1 },
+    { { "nan", "a NaN that comes in goes out", "asperity.h", "NaN lost" }, aspi_law_nan, 1, 1 },
 };
 
 #define ROWS (sizeof rows / sizeof rows[0])
@@ -80,6 +80,20 @@ static const aspi_law_row rows[] = {
 const asp_law *asp_laws(size_t index)
 {
     return index < ROWS ? &rows[index].law : NULL;
+}
+
+int asp_law_of_materials(const asp_law *law)
+{
+    size_t i = 0;
+    while (i < ROWS && &rows[i].law != law)
+        i++;
+    return i < ROWS && rows[i].materials;
+}
+
+/* Is the law asked for? */
+static int wanted(const aspi_law_row *row, const asp_laws_options *o)
+{
+    return (!o->only || strcmp(o->only, row->law.name) == 0) && (!o->material || row->materials);
 }
 
 asp_laws_options asp_laws_options_default(void)
@@ -274,22 +288,25 @@ asp_status asp_laws_check(const asp_ndf *ndf, const asp_laws_options *options,
     if (o.samples < 1000 || o.samples > 100000000)
         return asp_fail_range(err, "samples", (double)o.samples, 1000, 0, 1e8);
     for (i = 0; i < ROWS; i++)
-        if (!o.only || strcmp(o.only, rows[i].law.name) == 0) {
+        if (wanted(&rows[i], &o)) {
             found++;
             weight += rows[i].weight;
+        } else if (o.only && strcmp(o.only, rows[i].law.name) == 0) {
+            return asp_fail(err, ASP_EINVAL, o.only, "this law speaks of distributions, not of a material");
         }
     if (found == 0)
         return asp_fail(err, ASP_EUNKNOWN, o.only, "no such law");
     t = (aspi_trial *)malloc(sizeof *t);
     if (!t)
         return asp_fail(err, ASP_ENOMEM, "laws", "out of memory");
-    prepare_trial(t, ndf);
+    prepare_trial(t, o.material ? &o.material->ndf : ndf);
+    t->own = o.material;
     t->samples = o.samples;
     t->sparse = o.sparse;
     t->progress = o.progress;
     t->context = o.context;
     for (i = 0; i < ROWS && status == ASP_OK; i++) {
-        if (o.only && strcmp(o.only, rows[i].law.name) != 0)
+        if (!wanted(&rows[i], &o))
             continue;
         t->share = rows[i].weight / weight;
         if (!check_row(t, &rows[i], o.seed, report, context))

@@ -19,11 +19,24 @@ typedef struct aspi_view {
 enum {
     ASPI_MIRROR = 0, ASPI_MIXTURE = 6, ASPI_MATERIALS = 7,
     ASPI_PLASTIC = 7, ASPI_COMPENSATED, ASPI_FILM, ASPI_EON, ASPI_ROUGH_DIFFUSE, ASPI_ONE_SIDED,
-    ASPI_DIELECTRIC = ASPI_ONE_SIDED, ASPI_SHEET, ASPI_COMPENSATED_DIELECTRIC, ASPI_ALL_MATERIALS
+    ASPI_DIELECTRIC = ASPI_ONE_SIDED, ASPI_SHEET, ASPI_COMPENSATED_DIELECTRIC, ASPI_ALL_MATERIALS,
+    ASPI_OWN = ASPI_ALL_MATERIALS       /* the caller's, alone */
 };
+
+/* What laws have to know of a material. */
+typedef struct aspi_traits {
+    int mirrors;                  /* single scattering by mirror facets, whatever their Fresnel term */
+    int grooves;                  /* masked by them: those of a level surface */
+    int mixed;                    /* a cosine lobe is sampled beside the facets */
+    int crosses, thin;            /* light goes through; a sheet */
+    int quadrature;               /* each f is one */
+    int reciprocal, walks;
+    double eta;                   /* of what light crosses; 1 for a sheet */
+} aspi_traits;
 
 typedef struct aspi_trial {
     const asp_ndf *ndf;
+    const asp_material *own;      /* NULL: materials of every kind */
     asp_ndff ndff;
     asp_ndf standard;             /* the same shape through the identity map */
     double det;                   /* |det M| */
@@ -53,6 +66,7 @@ typedef struct aspi_law_row {
     asp_law law;
     void (*check)(aspi_trial *t);
     double weight;
+    int materials;                /* 1: it speaks of materials */
 } aspi_law_row;
 
 /* One comparison. A deviation that is not a number counts as infinite. `where` is printf's. */
@@ -120,10 +134,19 @@ double aspi_r2_density(const aspi_trial *t, double r, double phi);
 
 /* The material of a kind over the distribution (law_scatter.c), made when it is first asked for. */
 const asp_material *aspi_material(aspi_trial *t, int kind, const char **name);
+aspi_traits aspi_traits_of(const asp_material *mat);
+/* Kinds in [from, to) are tried: those, or the caller's material alone. */
+int aspi_first(const aspi_trial *t, int from);
+int aspi_end(const aspi_trial *t, int to);
+/* The same material with what it sends across not scaled by 1/eta^2. */
+asp_material aspi_importance(const asp_material *mat);
 
 /* Steps of rounding that a facet found from wi and wo carries, n the index where wo is over that where wi is: the
  * half vector is what is left of two vectors of length 1 and n. `more`: what else is as many steps (law_dielectric.c). */
 double aspi_refracted_steps(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double n, double more);
+
+/* The same of all of eval: Fresnel's term takes the root of what is left of 1 next to total reflection (law_adjoint.c). */
+double aspi_facet_steps(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double n);
 
 /* ---- random numbers and statistics (statistics.c) */
 

@@ -258,6 +258,8 @@ static asp_status check(const asp_preview *p, asp_error *err)
 {
     if (!p->material == !p->function)
         return asp_fail(err, ASP_EINVAL, "material", "exactly one of material and function is needed");
+    if (p->walk && p->material && !asp_can_walk(p->material))
+        return asp_fail(err, ASP_EINVAL, "walk", "facets of this material are not known well enough to walk");
     const struct { const char *name; double value, low, high; } ranges[] = {
         { "width", p->width, 0, ASP_IMAGE_SIDE },     { "height", p->height, 0, ASP_IMAGE_SIDE },
         { "samples", p->samples, 0, 65536 },          { "zoom", p->zoom, 0, 1000 },
