@@ -298,7 +298,8 @@ asp_status asp_index_of_f82(double f0, double tint, double *eta, double *k, asp_
  *     conductor:metal=Au,ndf=(student_t:alpha=0.3,gamma=3),mask=uncorrelated
  *     conductor:eta=0.2/0.9/1.5,k=3.9/2.4/1.9,ndf=(ggx:alpha=0.1)      conductor:f0=0.9/0.6/0.3,tint=0.9
  *     conductor:metal=Al,film=300,film_eta=1.4,ndf=(ggx:alpha=0.2)      (a thin film, nm)
- *     compensated:metal=Au,form=kulla_conty,ndf=(beckmann:alpha=0.8)    (energy given back)
+ *     compensated:metal=Au,form=kulla_conty,ndf=(beckmann:alpha=0.8)    (energy given back:
+ *         without absorption albedo 1 to 0.003, skewed 0.03 near grazing; docs/materials.md)
  *     compensated_dielectric:eta=1.5,form=kulla_conty,ndf=(ggx:alpha=0.6)  (the same for both sides of glass)
  *     dielectric:eta=1.5,transport=radiance,ndf=(ggx:alpha=0.2)         plastic:albedo=0.4/0.1/0.1,eta=1.5,ndf=(ggx)
  *     rough_diffuse:albedo=0.8,form=eon,ndf=(beckmann:alpha=1)
@@ -312,7 +313,7 @@ typedef struct asp_bsdf asp_bsdf;        /* what a scattering model is: see aspe
  * wi to wo is f of radiance from wo to wi. */
 typedef enum asp_transport { ASP_RADIANCE = 0, ASP_IMPORTANCE = 1 } asp_transport;
 
-#define ASP_ENERGY_NUMBERS 652
+#define ASP_ENERGY_NUMBERS 1300
 
 typedef struct asp_material {
     const asp_bsdf *model;

@@ -81,7 +81,7 @@ static void check_energy(void)
         asp_material mat = material(whole[i]);
         double off = 0;
         for (int k = 0; k < 6; k++)
-            off = fmax(off, fabs(albedo(&mat, direction(0.02 + 0.29 * k, 0.4 + k), 20000) - 1));
+            off = fmax(off, fabs(albedo(&mat, direction(0.02 + 0.29 * k, 0.4 + k), 100000) - 1));
         printf("  %s: off by %.4f\n", whole[i], off);
         worst = fmax(worst, off);
     }

@@ -76,12 +76,71 @@ static double cosine_at(double t, double *slope)
     return a / (a + b);
 }
 
-/* Mean of E against 2 cos dcos and over azimuth: Simpson's rule, eight steps a row; columns have equal
- * shares unless masking has kinks between them. */
+/* The azimuth of a column: aspi_energy_turn by bisection; it rises, by less than a quarter of a turn off. */
+static asp_vec2 azimuth_at(const double *energy, double turn)
+{
+    double low = turn - 0.25, high = turn + 0.25;
+    int i;
+    for (i = 0; i < 50; i++) {
+        double middle = 0.5 * (low + high), off;
+        asp_vec2 at = aspi_sincos2pi(middle);
+        off = aspi_energy_turn(energy, at.x, at.y, 1.0) - turn;
+        off = off < -0.5 ? off + 1.0 : off;
+        if (off < 0.0)
+            low = middle;
+        else
+            high = middle;
+    }
+    return aspi_sincos2pi(high);
+}
+
+/* The direction at aspi_energy_place's (turn, y): d by bisection, then w from (r u - t, 1), r how far the mean slope
+ * is from that of a facet facing w. */
+static asp_vec3 direction_at(const asp_ndf *ndf, const double *energy, double turn, double y)
+{
+    const asp_map *m = &ndf->map;
+    asp_vec2 at = azimuth_at(energy, turn);
+    double vx = m->m00 * at.x + m->m10 * at.y, vy = m->m01 * at.x + m->m11 * at.y, v = aspi_sqrt(vx * vx + vy * vy);
+    double top = aspi_sqrt(1.0 + m->tx * m->tx + m->ty * m->ty), bottom = -(m->tx * at.x + m->ty * at.y);
+    double low = bottom, high = top, goal, r, c;
+    int i;
+    y = aspi_max(y, 1e-3);
+    goal = aspi_energy_bend(bottom, v) * (1.0 - y * y) + energy[ENERGY_TOP] * y * y;
+    for (i = 0; i < 60; i++) {
+        double middle = 0.5 * (low + high);
+        if (aspi_energy_bend(middle, v) < goal)
+            low = middle;
+        else
+            high = middle;
+    }
+    r = 0.5 * (top - high) * (top + high) / aspi_max(high - bottom, 1e-9);
+    at.x = r * at.x - m->tx;
+    at.y = r * at.y - m->ty;
+    c = 1.0 / aspi_sqrt(1.0 + at.x * at.x + at.y * at.y);
+    return aspi_vector(at.x * c, at.y * c, c);
+}
+
+/* L and the last row's g, of the head of energy.h. */
+static void bend_azimuths(double *energy, const asp_ndf *ndf)
+{
+    const asp_map *m = &ndf->map;
+    double a = m->m00 * m->m00 + m->m01 * m->m01, c = m->m10 * m->m10 + m->m11 * m->m11;
+    double b = m->m00 * m->m10 + m->m01 * m->m11, det = aspi_sqrt(aspi_max(a * c - b * b, 0.0));
+    double most = aspi_sqrt(0.5 * (a + c) + aspi_sqrt(0.25 * (a - c) * (a - c) + b * b));
+    double by = 1.0 / (most * aspi_sqrt(a + c + 2.0 * det));
+    double across = aspi_sqrt(a * m->ty * m->ty + c * m->tx * m->tx - 2.0 * b * m->tx * m->ty);
+    double skew = across > 0.0 ? 0.5 / across : 0.0;
+    energy[ENERGY_BEND] = by * (a + det) + skew * m->tx * m->tx;
+    energy[ENERGY_BEND + 1] = by * b + skew * m->tx * m->ty;
+    energy[ENERGY_BEND + 2] = by * (c + det) + skew * m->ty * m->ty;
+    energy[ENERGY_TOP] = aspi_energy_bend(aspi_sqrt(1.0 + m->tx * m->tx + m->ty * m->ty), det / most);
+}
+
+/* Mean of E against 2 cos dcos and over azimuth: Simpson's rule, four or eight steps a row. */
 static double mean_of(const asp_material *lobe, const double *energy)
 {
-    int skewed = lobe->ndf.map.tx != 0.0 || lobe->ndf.map.ty != 0.0;
-    int n = 8 * ((int)energy[ENERGY_HEIGHT] - 1), turns = skewed ? 8 * ENERGY_COLUMNS : (int)energy[ENERGY_COUNT], i, j;
+    int columns = (int)energy[ENERGY_COUNT], turns = columns > 1 ? energy[ENERGY_TURNS] > 1.0 ? 32 : 128 : 1, i, j;
+    int n = (columns > 1 ? 4 : 8) * ((int)energy[ENERGY_HEIGHT] - 1);
     double sum = 0.0;
     for (j = 0; j < turns; j++) {
         asp_vec2 at = aspi_sincos2pi((double)j / (turns * energy[ENERGY_TURNS]));
@@ -142,17 +201,18 @@ static void fill(double *energy, const asp_material *lobe, albedo_function *albe
     int turns = map->tx == 0.0 && map->ty == 0.0 && !lobe->ndf.data ? 2 : 1;
     int columns = round ? 1 : ENERGY_COLUMNS / turns, rows = round ? ENERGY_FINE : ENERGY_ROWS;
     const rule *r = kinked ? round ? &finest : &fine : round ? &fine : &coarse;
+    energy[ENERGY_COUNT] = columns;
+    bend_azimuths(energy, &lobe->ndf);
     for (j = 0; j < columns; j++) {
         double *e = energy + j * rows;
-        asp_vec2 at = aspi_sincos2pi((double)j / (columns * turns));
         for (i = 0; i < rows; i++) {
             double slope, c = cosine_at(aspi_max((double)i / (rows - 1), 1e-3), &slope);
-            double s = aspi_sqrt(1.0 - c * c);
-            asp_vec3 w = aspi_vector(s * at.x, s * at.y, c);
-            e[i] = albedo(lobe, aspi_vector(side * w.x, side * w.y, side * w.z), r) / aspi_energy_masked(&lobe->ndf, w, lobe->mask);
+            asp_vec3 w = round ? aspi_vector(aspi_sqrt(1.0 - c * c), 0.0, c)
+                       : direction_at(&lobe->ndf, energy, (double)j / (columns * turns), (double)i / (rows - 1));
+            e[i] = albedo(lobe, aspi_vector(side * w.x, side * w.y, side * w.z), r)
+                 / aspi_energy_masked(&lobe->ndf, w, lobe->mask);
         }
     }
-    energy[ENERGY_COUNT] = columns;
     energy[ENERGY_HEIGHT] = rows;
     energy[ENERGY_TURNS] = turns;
     energy[ENERGY_MEAN] = mean_of(lobe, energy);
