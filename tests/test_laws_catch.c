@@ -208,7 +208,82 @@ static void spoil_density_sharper(asp_model *m)
     m->f64.density_n = density_sharper_n;
 }
 
+/* Facets face their own way, seen or not: light meets some from behind. */
+static void spoil_visible_any(asp_model *m) { m->f64.visible = visible_as_normal; }
+
+/* A tenth more facets than there are: D alone, of which neither masking nor samplers know. */
+static double density_tenth(const asp_ndf *k, double mx, double my, double mz)
+{
+    return 1.1 * ggx.f64.density(k, mx, my, mz);
+}
+static void density_tenth_n(const asp_ndf *k, size_t n, const double *mx, const double *my, const double *mz,
+                            double *out)
+{
+    for (size_t i = 0; i < n; i++)
+        out[i] = density_tenth(k, mx[i], my[i], mz[i]);
+}
+static void spoil_density_tenth(asp_model *m)
+{
+    m->f64.density = density_tenth;
+    m->f64.density_n = density_tenth_n;
+}
+
+/* No facet hides another. */
+static double sigma_open(const asp_ndf *k, double wx, double wy, double wz)
+{
+    (void)k;
+    (void)wx;
+    (void)wy;
+    return wz > 0 ? wz : 0;
+}
+static void sigma_open_n(const asp_ndf *k, size_t n, double sign, const double *wx, const double *wy, const double *wz,
+                         double *out)
+{
+    for (size_t i = 0; i < n; i++)
+        out[i] = sigma_open(k, sign * wx[i], sign * wy[i], sign * wz[i]);
+}
+static void spoil_sigma_open(asp_model *m)
+{
+    m->f64.sigma = sigma_open;
+    m->f64.sigma_n = sigma_open_n;
+}
+
+/* One reflection's density 1e-9 off, and one refraction's: what samples say of themselves. */
+static void reflect_off(const asp_ndf *k, double wx, double wy, double wz, double u1, double u2, asp_reflection *out)
+{
+    ggx.f64.reflect(k, wx, wy, wz, u1, u2, out);
+    out->pdf *= 1 + 1e-9;
+}
+SPOIL(spoil_reflect_off, f64.reflect, reflect_off)
+
+static void refract_off(const asp_ndf *k, double wx, double wy, double wz, double u1, double u2, double u3, double eta,
+                        double inverse, asp_refraction *out)
+{
+    ggx.f64.refract(k, wx, wy, wz, u1, u2, u3, eta, inverse, out);
+    out->pdf *= 1 + 1e-9;
+}
+SPOIL(spoil_refract_off, f64.refract, refract_off)
+
+/* A density that is not that of slopes. */
+static double density_lower(const asp_ndf *k, double mx, double my, double mz)
+{
+    return ggx.f64.density(k, mx, my, mz) * (mz < 0.9 ? 1 + 1e-9 : 1);
+}
+SPOIL(spoil_density_lower, f64.density, density_lower)
+
 static const mistake mistakes[] = {
+    { "facets seen from behind", "no_boundary", "toy:alpha=0.3", spoil_visible_any },
+    { "a tenth more facets", "walk", "toy:alpha=0.3", spoil_density_tenth },
+    { "D and sampler of different roughness", "walk", "toy:alpha=0.3", spoil_density_sharper },
+    { "visible normals that are all normals", "walk", "toy:alpha=0.3", spoil_visible_any },
+    { "a tenth more facets", "furnace", "toy:alpha=0.1", spoil_density_tenth },
+    { "nothing hides anything", "furnace", "toy:alpha=0.3", spoil_sigma_open },
+    { "the density of a reflection 1e-9 off", "weight", "toy:alpha=0.3", spoil_reflect_off },
+    { "D and sampler of different roughness", "weight", "toy:alpha=0.3", spoil_density_sharper },
+    { "the density of a refraction 1e-9 off", "refraction", "toy:alpha=0.3", spoil_refract_off },
+    { "D and sampler of different roughness", "refraction", "toy:alpha=0.3", spoil_density_sharper },
+    { "D off where facets are steep", "pdf_normal", "toy:alpha=0.3", spoil_density_lower },
+    { "a density 1e-8 too large", "pdf_normal", "toy:alpha=0.3", spoil_density_more },
     { "a density 1e-8 too large", "normalisation", "toy:alpha=0.3", spoil_density_more },
     { "a tail that falls too fast", "normalisation", "toy:alpha=0.3", spoil_density_tail },
     { "a tail that falls too fast", "sigma", "toy:alpha=0.3", spoil_density_tail },

@@ -40,6 +40,17 @@ static double slope_term(const void *context, double r, int index)
     return 2 * ASPI_PI * ((asp_P22(t->ndf, p.x, p.y) * t->det) * r) * r;
 }
 
+/* What rounding of its slope does to D at m: near the mean slope of a narrow, tilted lobe p moves by steps of
+ * eps |p| / alpha in q, and d ln P22 / dq is at most 4 for algebraic tails, 2 q for Gaussian ones. */
+static double slope_rounding(const aspi_trial *t, asp_vec3 m)
+{
+    double r, phi;
+    aspi_standard_polar(t->ndf, m, &r, &phi);
+    return (4 + 2 * fmin(r / t->scale, 40)) * 2.3e-16
+         * (fabs(t->ndf->i00) + fabs(t->ndf->i01) + fabs(t->ndf->i10) + fabs(t->ndf->i11))
+         * (hypot(m.x, m.y) / m.z + hypot(t->ndf->map.tx, t->ndf->map.ty)) / t->scale;
+}
+
 void aspi_law_slope_density(aspi_trial *t)
 {
     double sum = t->planar ? aspi_planar_slope_mass(t) : aspi_radial_integral(slope_term, t);
@@ -47,20 +58,43 @@ void aspi_law_slope_density(aspi_trial *t)
     aspi_find(t, fabs(sum - 1), sum_allowed(t), "integral %.15g", sum);
     for (i = 0; i < 1000; i++) {
         asp_vec3 m = aspi_random_facet(t);
-        double px = -m.x / m.z, py = -m.y / m.z, z2 = m.z * m.z;
-        double D = asp_D(t->ndf, m), other = asp_P22(t->ndf, px, py) / z2 / z2;
-        double r, phi, bend;
+        double z2 = m.z * m.z;
+        double D = asp_D(t->ndf, m), other = asp_P22(t->ndf, -m.x / m.z, -m.y / m.z) / z2 / z2;
         if (!(D > 1e-250 && m.z > 1e-60))
             continue;
-        /* p was rounded: near the mean slope of a narrow, tilted lobe that is a step of
-         * eps |p| / alpha in q, and d ln P22 / dq is at most 4 for algebraic tails, 2 q for
-         * Gaussian ones */
-        aspi_standard_polar(t->ndf, m, &r, &phi);
-        bend = (4 + 2 * fmin(r / t->scale, 40)) * 2.3e-16
-             * (fabs(t->ndf->i00) + fabs(t->ndf->i01) + fabs(t->ndf->i10) + fabs(t->ndf->i11))
-             * (hypot(px, py) + hypot(t->ndf->map.tx, t->ndf->map.ty)) / t->scale;
-        aspi_find(t, relative(D, other), 1e-13 * (1 + fabs(log(D))) + bend,
+        aspi_find(t, relative(D, other), 1e-13 * (1 + fabs(log(D))) + slope_rounding(t, m),
                   "m = (%.6g, %.6g, %.6g): D %.17g, P22/cos^4 %.17g", m.x, m.y, m.z, D, other);
+    }
+}
+
+/* The density of normals, in slopes and times r^2. */
+static double normal_density_term(const void *context, double r, int index)
+{
+    const aspi_trial *t = (const aspi_trial *)context;
+    double phi = golden(index), zr;
+    asp_vec2 p = aspi_map_slope(&t->ndf->map, r * cos(phi), r * sin(phi));
+    asp_vec3 m = aspi_unit(-p.x, -p.y, 1);
+    zr = m.z * r;
+    return 2 * ASPI_PI * (asp_pdf_normal(t->ndf, m) * m.z) * zr * zr * t->det;
+}
+
+/* Slopes have the density P22, and a solid angle of facets is cos^3 of the slopes' area. */
+void aspi_law_density_normal(aspi_trial *t)
+{
+    int i;
+    if (!t->planar) {
+        double sum = aspi_radial_integral(normal_density_term, t);
+        aspi_find(t, fabs(sum - 1), sum_allowed(t), "integral %.15g", sum);
+    }
+    for (i = 0; i < 1000; i++) {
+        asp_vec3 m = aspi_random_facet(t), below = m;
+        double pdf = asp_pdf_normal(t->ndf, m), other = asp_P22(t->ndf, -m.x / m.z, -m.y / m.z) / m.z / m.z / m.z;
+        below.z = -m.z;
+        aspi_find(t, asp_pdf_normal(t->ndf, below), 0, "a facet that faces down");
+        if (!(pdf > 1e-250 && m.z > 1e-60))
+            continue;
+        aspi_find(t, relative(pdf, other), 1e-13 * (1 + fabs(log(pdf))) + slope_rounding(t, m),
+                  "m = (%.6g, %.6g, %.6g): density %.17g, P22/cos^3 %.17g", m.x, m.y, m.z, pdf, other);
     }
 }
 

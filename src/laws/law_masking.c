@@ -244,18 +244,6 @@ void aspi_law_G2(aspi_trial *t)
 
 /* ------------------------------------------------------------------ densities of normals */
 
-void aspi_law_density_normal(aspi_trial *t)
-{
-    int i;
-    for (i = 0; i < 1000; i++) {
-        asp_vec3 m = aspi_random_facet(t);
-        double pdf = asp_pdf_normal(t->ndf, m), D = asp_D(t->ndf, m);
-        if (D > 1e-290)
-            aspi_find(t, fabs(pdf - D * m.z) / (D * m.z), 1e-15,
-                      "m = (%.6g, %.6g, %.6g)", m.x, m.y, m.z);
-    }
-}
-
 /* ---- the integral of pdf_visible, in slopes x along the view and y across it
  *
  * The density ends where a facet turns edge-on, on the line x = mu: no node may meet that kink, and
