@@ -94,12 +94,11 @@ static asp_vec2 azimuth_at(const double *energy, double turn)
     return aspi_sincos2pi(high);
 }
 
-/* The direction at aspi_energy_place's (turn, y): d by bisection, then w from (r u - t, 1), r how far the mean slope
- * is from that of a facet facing w. */
-static asp_vec3 direction_at(const asp_ndf *ndf, const double *energy, double turn, double y)
+/* The direction of azimuth u = at and aspi_energy_place's y: d by bisection, then w from (r u - t, 1), r how far the
+ * mean slope is from that of a facet facing w. */
+static asp_vec3 direction_at(const asp_ndf *ndf, const double *energy, asp_vec2 at, double y)
 {
     const asp_map *m = &ndf->map;
-    asp_vec2 at = azimuth_at(energy, turn);
     double vx = m->m00 * at.x + m->m10 * at.y, vy = m->m01 * at.x + m->m11 * at.y, v = aspi_sqrt(vx * vx + vy * vy);
     double top = aspi_sqrt(1.0 + m->tx * m->tx + m->ty * m->ty), bottom = -(m->tx * at.x + m->ty * at.y);
     double low = bottom, high = top, goal, r, c;
@@ -205,10 +204,11 @@ static void fill(double *energy, const asp_material *lobe, albedo_function *albe
     bend_azimuths(energy, &lobe->ndf);
     for (j = 0; j < columns; j++) {
         double *e = energy + j * rows;
+        asp_vec2 at = azimuth_at(energy, (double)j / (columns * turns));
         for (i = 0; i < rows; i++) {
             double slope, c = cosine_at(aspi_max((double)i / (rows - 1), 1e-3), &slope);
             asp_vec3 w = round ? aspi_vector(aspi_sqrt(1.0 - c * c), 0.0, c)
-                       : direction_at(&lobe->ndf, energy, (double)j / (columns * turns), (double)i / (rows - 1));
+                       : direction_at(&lobe->ndf, energy, at, (double)i / (rows - 1));
             e[i] = albedo(lobe, aspi_vector(side * w.x, side * w.y, side * w.z), r)
                  / aspi_energy_masked(&lobe->ndf, w, lobe->mask);
         }
