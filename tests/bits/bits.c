@@ -415,7 +415,7 @@ static void walks(const MATERIAL *mat, uint64_t *h, CV3 wi, CV3 wo, V3 out, VRGB
     static uint64_t batch[COUNT], single[COUNT];
     size_t i;
     EACH
-        batch[i] = single[i] = i << 32;
+        batch[i] = single[i] = (uint64_t)i << 32;
     CALL_N(walk_eval_cos)(mat, COUNT, wi, wo, next_of, batch, sizeof *batch, colour);
     EACH {
         asp_c3 f = CALL(walk_eval_cos)(mat, WI, WO, next_of, &single[i]);
