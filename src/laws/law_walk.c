@@ -96,89 +96,93 @@ static int many_lobes(const aspi_trial *t)
     return (smooth && (t->skewed || five.alpha_x > 10 * five.alpha_y)) || hypot(five.mean_x, five.mean_y) > 1;
 }
 
-/* What eval adds up to against what walks carry: three standard errors and 1e-3. A deviation that is as large by
- * chance does not come back with eight times the samples. */
-static void furnace(aspi_trial *t, const asp_material *mat, const asp_material *guide, asp_vec3 wi, mean total, mean carried,
-                    int both, int lossless, size_t n, const char *name, const char *view)
+/* What is tried: `guide` proposes directions; walks end on `both` sides; a `lossless` one carries 1, and so must eval in
+ * a furnace, else both lose the same; `compare`: eval is looked at too. */
+typedef struct subject {
+    const asp_material *mat, *guide;
+    const char *name, *view;
+    asp_vec3 wi;
+    int both, lossless, compare;
+} subject;
+
+/* The furnace of eval with its standard error and what walks carry, and the cell farthest from where walks end. */
+typedef struct view_found {
+    double furnace, se, carried, worst, ends, parts;
+    int cell;
+} view_found;
+
+static double furnace_off(const view_found *f) { return fabs(f->furnace - f->carried); }
+
+static double furnace_allowed(const view_found *f) { return 1e-3 + 3 * f->se; }
+
+#define CELL_ALLOWED 5.5
+
+/* n walks, each of which is looked at, and as many samples of eval. */
+static view_found measure(aspi_trial *t, const subject *s, size_t samples)
 {
-    double se = sqrt(error2(&total, (double)n) + (lossless ? 0 : error2(&carried, (double)n)));
-    double found = value(&total, (double)n), all = lossless ? 1 : value(&carried, (double)n);
-    if (fabs(found - all) > 1e-3 + 3 * se) {
-        total = carried = (mean){ 0, 0 };
-        n *= 8;
-        for (size_t i = 0; i < n; i++) {
-            double pdf;
-            asp_vec3 wo = propose(t, guide, wi, both, &pdf);
-            put(&total, pdf > 0 ? asp_walk_eval_cos(mat, wi, wo, next, t).r / pdf : 0);
-            if (!lossless)
-                put(&carried, asp_walk_sample(mat, wi, next, t).weight.r);
-        }
-        se = sqrt(error2(&total, (double)n) + (lossless ? 0 : error2(&carried, (double)n)));
-        found = value(&total, (double)n);
-        all = lossless ? 1 : value(&carried, (double)n);
+    mean total = { 0, 0 }, carried = { 0, 0 }, ends[CELLS + 1] = { { 0, 0 } }, parts[CELLS + 1] = { { 0, 0 } };
+    double n = (double)samples, most = 1;
+    view_found f = { 0, 0, 1, 0, 0, 0, 0 };
+    if (s->both && s->mat->transport != ASP_IMPORTANCE) /* a walk crosses more than once; radiance is 1/eta^2 below */
+        most = fmax(1, 1 / (s->mat->c.r * s->mat->c.r));
+    for (size_t i = 0; i < samples; i++) {
+        asp_bsdf_sample end = asp_walk_sample(s->mat, s->wi, next, t);
+        double pdf, x;
+        asp_vec3 wo;
+        aspi_find(t, s->lossless ? fabs(end.weight.r - 1) : end.weight.r - most, 1e-12, "%s, %s: a walk carries %.15g",
+                  s->name, s->view, end.weight.r);
+        put(&carried, end.weight.r);
+        put(&ends[cell_of(end.wo, s->wi)], end.weight.r);
+        if (!s->compare)
+            continue;
+        wo = propose(t, s->guide, s->wi, s->both, &pdf);
+        x = pdf > 0 ? asp_walk_eval_cos(s->mat, s->wi, wo, next, t).r / pdf : 0;
+        put(&total, x);
+        put(&parts[cell_of(wo, s->wi)], x);
     }
-    aspi_find(t, fabs(found - all), 1e-3 + 3 * se, "%s, %s: furnace %.5f +- %.5f, not %.5f", name, view, found, se, all);
+    f.furnace = value(&total, n);
+    f.se = sqrt(error2(&total, n) + (s->lossless ? 0 : error2(&carried, n)));
+    if (!s->lossless)
+        f.carried = value(&carried, n);
+    /* a cell that a few paths carry has no variance to speak of, and is counted with the others like it, at the end */
+    for (int c = 0; c < CELLS; c++)
+        if (few(&ends[c]) || few(&parts[c])) {
+            join(&ends[CELLS], &ends[c]);
+            join(&parts[CELLS], &parts[c]);
+            ends[c] = parts[c] = (mean){ 0, 0 };
+        }
+    for (int c = 0; c <= CELLS; c++) {
+        double a = value(&ends[c], n), b = value(&parts[c], n);
+        double off = fabs(a - b) / sqrt(error2(&ends[c], n) + error2(&parts[c], n) + 1e-12);
+        if (!few(&ends[c]) && !few(&parts[c]) && off > f.worst) {
+            f.worst = off;
+            f.cell = c;
+            f.ends = a;
+            f.parts = b;
+        }
+    }
+    return f;
 }
 
-/* `lossless`: each walk carries 1, and so must eval in a furnace; else both lose the same. */
 static void try_material(aspi_trial *t, const asp_material *mat, const asp_material *guide,
-                         const char *name, int both, int lossless, size_t least)
+                         const char *name, int both, int lossless, size_t n)
 {
-    size_t n = least;
-    int compare = !has_pole(t->ndf) && !many_lobes(t) && !(both && t->skewed); /* a wall that refracts makes a Dirac peak */
+    subject s = { mat, guide, name, "", { 0, 0, 1 }, both, lossless, 0 };
+    s.compare = !has_pole(t->ndf) && !many_lobes(t) && !(both && t->skewed); /* a wall that refracts makes a Dirac peak */
     for (size_t k = 0; k < t->view_count; k += 3) {
-        asp_vec3 wi = t->views[k].w;
-        mean total = { 0, 0 }, carried = { 0, 0 }, ends[CELLS] = { { 0, 0 } }, parts[CELLS] = { { 0, 0 } };
-        mean rest[2] = { { 0, 0 }, { 0, 0 } };
-        double z, worst = 0, found[2] = { 0, 0 }, most = 1;
-        int at = 0;
-        for (size_t i = 0; i < n; i++) {
-            asp_bsdf_sample s = asp_walk_sample(mat, wi, next, t);
-            double pdf, x;
-            asp_vec3 wo;
-            if (both && mat->transport != ASP_IMPORTANCE) /* a walk crosses more than once; radiance is 1/eta^2 below */
-                most = fmax(1, 1 / (mat->c.r * mat->c.r));
-            aspi_find(t, lossless ? fabs(s.weight.r - 1) : s.weight.r - most, 1e-12, "%s, %s: a walk carries %.15g",
-                      name, t->views[k].name, s.weight.r);
-            put(&carried, s.weight.r);
-            put(&ends[cell_of(s.wo, wi)], s.weight.r);
-            if (!compare)
-                continue;
-            wo = propose(t, guide, wi, both, &pdf);
-            x = pdf > 0 ? asp_walk_eval_cos(mat, wi, wo, next, t).r / pdf : 0;
-            put(&total, x);
-            put(&parts[cell_of(wo, wi)], x);
+        view_found f;
+        s.wi = t->views[k].w;
+        s.view = t->views[k].name;
+        f = measure(t, &s, n);
+        if (s.compare) {
+            /* beyond a bound by chance or by a few heavy samples, or a fault: that one comes back */
+            if (furnace_off(&f) > furnace_allowed(&f) || f.worst > CELL_ALLOWED)
+                f = measure(t, &s, 8 * n);
+            aspi_find(t, furnace_off(&f), furnace_allowed(&f), "%s, %s: furnace %.5f +- %.5f, not %.5f", name, s.view,
+                      f.furnace, f.se, f.carried);
+            aspi_find(t, f.worst, CELL_ALLOWED, "%s, %s: ends against eval, cell %d: %.5f, %.5f", name, s.view, f.cell,
+                      f.ends, f.parts);
         }
-        if (compare)
-            furnace(t, mat, guide, wi, total, carried, both, lossless, n, name, t->views[k].name);
-        /* a cell that a few paths carry has no variance to speak of, and is counted with the others like it */
-        for (int c = 0; c < CELLS && compare; c++)
-            if (few(&ends[c]) || few(&parts[c])) {
-                join(&rest[0], &ends[c]);
-                join(&rest[1], &parts[c]);
-                ends[c] = parts[c] = (mean){ 0, 0 };
-            }
-        for (int c = 0; c <= CELLS && compare; c++) {
-            const mean *a = c < CELLS ? &ends[c] : &rest[0], *b = c < CELLS ? &parts[c] : &rest[1];
-            double s2 = error2(a, (double)n) + error2(b, (double)n);
-            if (few(a) || few(b))
-                continue;
-            z = fabs(value(a, (double)n) - value(b, (double)n)) / sqrt(s2 + 1e-12);
-            if (z > worst) {
-                worst = z;
-                at = c;
-                found[0] = value(a, (double)n);
-                found[1] = value(b, (double)n);
-            }
-        }
-        if (worst > 5.5 && n == least) { /* a few heavy samples, or a fault: that one comes back */
-            n *= 8;
-            k -= 3;
-            continue;
-        }
-        n = least;
-        aspi_find(t, worst, 5.5, "%s, %s: ends against eval, cell %d: %.5f, %.5f", name, t->views[k].name, at,
-                  found[0], found[1]);
         if (aspi_tick(t, (double)k / (double)t->view_count))
             return;
     }
