@@ -70,8 +70,6 @@ static void straight(aspi_trial *t, const asp_bsdf_sample *s, asp_vec3 w, double
               "%s, %s: bent or dimmed", what, view);
 }
 
-static double next(void *state) { return aspi_uniform((aspi_trial *)state); }
-
 /* eta = 1 is not there (eta near 1 hardly: `limits`). For single scattering that is a case of its own, which reflects
  * nothing anywhere; walks meet facet after facet and pass. */
 void aspi_law_no_boundary(aspi_trial *t)
@@ -89,7 +87,7 @@ void aspi_law_no_boundary(aspi_trial *t)
                       "%s: something is scattered", t->views[i].name);
             /* a walk along the surface crosses as many facets as it is long */
             if (k < 10 && t->views[i].w.z > 0.1 * fmax(1, asp_sigma(t->ndf, t->views[i].w))) {
-                s = asp_walk_sample(&none, w, next, t);
+                s = asp_walk_sample(&none, w, aspi_next, t);
                 straight(t, &s, w, 1e-12, "walk", t->views[i].name);
             }
         }

@@ -280,8 +280,6 @@ static void compare_samples(aspi_trial *t)
     }
 }
 
-static double largest(asp_rgb c) { return fmax(c.r, fmax(c.g, c.b)); }
-
 static double farthest(asp_rgb a, asp_rgbf b)
 {
     return fmax(fabs(a.r - (double)b.r), fmax(fabs(a.g - (double)b.g), fabs(a.b - (double)b.b)));
@@ -307,7 +305,7 @@ static void compare_material(aspi_trial *t)
         wo = narrow(v);
         w = widen(wi);
         v = widen(wo);
-        f = largest(asp_eval_cos(&wide, w, v));
+        f = aspi_largest(asp_eval_cos(&wide, w, v));
         pdf = asp_pdf(&wide, w, v);
         n = w.z < 0 ? 1 / is.eta : is.eta;
         k = w.z * v.z > 0 ? 1 : n;

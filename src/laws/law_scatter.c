@@ -115,8 +115,6 @@ static asp_vec3 up(asp_vec3 w)
     return w;
 }
 
-static double largest(asp_rgb c) { return fmax(c.r, fmax(c.g, c.b)); }
-
 static double difference(asp_rgb a, asp_rgb b)
 {
     return fmax(fabs(a.r - b.r), fmax(fabs(a.g - b.g), fabs(a.b - b.b)));
@@ -145,7 +143,7 @@ void aspi_law_reciprocity(aspi_trial *t)
              * over |wi + wo| */
             steps = aspi_dot(wi, wo) + 1;
             steps = 1e-15 / fmax(steps, 1e-15);
-            aspi_find(t, difference(a, b) / fmax(largest(a), 1e-200), 1e-13 + steps,
+            aspi_find(t, difference(a, b) / fmax(aspi_largest(a), 1e-200), 1e-13 + steps,
                       "%s, wi (%.6g, %.6g, %.6g), wo (%.6g, %.6g, %.6g)", name, wi.x, wi.y, wi.z,
                       wo.x, wo.y, wo.z);
             aspi_find(t, !(a.r >= 0 && a.g >= 0 && a.b >= 0), 0, "%s: negative f", name);
@@ -164,7 +162,7 @@ static void furnace_by_samples(aspi_trial *t, asp_vec3 wi, const char *view, siz
     double sum = 0, sum2 = 0, mean, error;
     for (size_t i = 0; i < n; i++) {
         double u1 = aspi_uniform(t), u2 = aspi_uniform(t);
-        double w = largest(asp_sample_lobe(&mat, wi, u1, u2, aspi_uniform(t)).weight);
+        double w = aspi_largest(asp_sample_lobe(&mat, wi, u1, u2, aspi_uniform(t)).weight);
         sum += w;
         sum2 += w * w;
     }
@@ -247,15 +245,15 @@ void aspi_law_weight(aspi_trial *t)
             if (!(asp_sigma(t->ndf, v->w) > 1e-150)) /* nothing can be seen from there */
                 continue;
             aspi_find(t, fabs(norm - 1), 1e-14, "%s, %s: wo is not a unit vector", name, v->name);
-            aspi_find(t, !(s.pdf >= 0) || !(largest(s.weight) >= 0), 0,
-                      "%s, %s: pdf %g, weight %g", name, v->name, s.pdf, largest(s.weight));
+            aspi_find(t, !(s.pdf >= 0) || !(aspi_largest(s.weight) >= 0), 0,
+                      "%s, %s: pdf %g, weight %g", name, v->name, s.pdf, aspi_largest(s.weight));
             if (s.wo.z <= 0) {
-                aspi_find(t, largest(s.weight), 0, "%s, %s: weight below the horizon", name,
+                aspi_find(t, aspi_largest(s.weight), 0, "%s, %s: weight below the horizon", name,
                           v->name);
                 continue;
             }
             if (is.mirrors && !is.grooves) /* grooves know nothing of this distribution */
-                aspi_find(t, largest(s.weight) - 1, 1e-9, "%s, %s: weight above 1", name, v->name);
+                aspi_find(t, aspi_largest(s.weight) - 1, 1e-9, "%s, %s: weight above 1", name, v->name);
             /* wo carries the facet in its last digits: the half vector of wi and wo is known to
              * eps over |wi + wo|, its slope to that over h.z^2, and D moves with slope/roughness */
             apart = hypot(hypot(v->w.x + s.wo.x, v->w.y + s.wo.y), v->w.z + s.wo.z);
@@ -266,14 +264,14 @@ void aspi_law_weight(aspi_trial *t)
                 continue;
             w = s.weight;
             w.r *= s.pdf; w.g *= s.pdf; w.b *= s.pdf;
-            aspi_find(t, difference(w, f) / fmax(largest(f), 1e-200), 1e-11 + steps,
+            aspi_find(t, difference(w, f) / fmax(aspi_largest(f), 1e-200), 1e-11 + steps,
                       "%s, %s, wo (%.6g, %.6g, %.6g): weight pdf %.15g, f cos %.15g", name,
                       v->name, s.wo.x, s.wo.y, s.wo.z, w.r, f.r);
             aspi_find(t, fabs(s.pdf - pdf) / pdf, 1e-11 + steps,
                       "%s, %s, wo (%.6g, %.6g, %.6g): pdf of the sample %.15g, asp_pdf %.15g",
                       name, v->name, s.wo.x, s.wo.y, s.wo.z, s.pdf, pdf);
             again.r *= s.wo.z; again.g *= s.wo.z; again.b *= s.wo.z;
-            aspi_find(t, difference(again, f) / fmax(largest(f), 1e-200), 1e-14,
+            aspi_find(t, difference(again, f) / fmax(aspi_largest(f), 1e-200), 1e-14,
                       "%s, %s: eval cos against eval_cos", name, v->name);
         }
     }

@@ -9,8 +9,6 @@
 
 #define CELLS 12      /* three bands of height on either side, two halves of azimuth */
 
-static double next(void *state) { return aspi_uniform(state); }
-
 static int cell_of(asp_vec3 w, asp_vec3 wi)
 {
     int band = (int)(3 * fmin(fabs(w.z), 0.999999)), side = w.z < 0;
@@ -126,7 +124,7 @@ static view_found measure(aspi_trial *t, const subject *s, size_t samples)
     if (s->both && s->mat->transport != ASP_IMPORTANCE) /* a walk crosses more than once; radiance is 1/eta^2 below */
         most = fmax(1, 1 / (s->mat->c.r * s->mat->c.r));
     for (size_t i = 0; i < samples; i++) {
-        asp_bsdf_sample end = asp_walk_sample(s->mat, s->wi, next, t);
+        asp_bsdf_sample end = asp_walk_sample(s->mat, s->wi, aspi_next, t);
         double pdf, x;
         asp_vec3 wo;
         aspi_find(t, s->lossless ? fabs(end.weight.r - 1) : end.weight.r - most, 1e-12, "%s, %s: a walk carries %.15g",
@@ -136,7 +134,7 @@ static view_found measure(aspi_trial *t, const subject *s, size_t samples)
         if (!s->compare)
             continue;
         wo = propose(t, s->guide, s->wi, s->both, &pdf);
-        x = pdf > 0 ? asp_walk_eval_cos(s->mat, s->wi, wo, next, t).r / pdf : 0;
+        x = pdf > 0 ? asp_walk_eval_cos(s->mat, s->wi, wo, aspi_next, t).r / pdf : 0;
         put(&total, x);
         put(&parts[cell_of(wo, s->wi)], x);
     }

@@ -160,6 +160,8 @@ double aspi_dot(asp_vec3 a, asp_vec3 b)
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+double aspi_largest(asp_rgb c) { return fmax(c.r, fmax(c.g, c.b)); }
+
 asp_vec3 aspi_direction(double theta, double phi)
 {
     asp_vec3 v;

@@ -121,6 +121,7 @@ void aspi_law_nan(aspi_trial *t);
 
 asp_vec3 aspi_unit(double x, double y, double z);
 double aspi_dot(asp_vec3 a, asp_vec3 b);
+double aspi_largest(asp_rgb c);                  /* of its three channels */
 /* The direction at angle theta from the normal and azimuth phi. */
 asp_vec3 aspi_direction(double theta, double phi);
 /* p = M q + t and back. */
@@ -151,6 +152,7 @@ double aspi_facet_steps(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double n)
 /* ---- random numbers and statistics (statistics.c) */
 
 double aspi_uniform(aspi_trial *t);              /* [0, 1), 53 bits */
+double aspi_next(void *trial);                   /* the same, as walks ask for it */
 asp_vec3 aspi_random_direction(aspi_trial *t);   /* unit sphere, uniform */
 /* A facet normal from the surface itself, and now and then far out in its tail. */
 asp_vec3 aspi_random_facet(aspi_trial *t);

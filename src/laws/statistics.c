@@ -17,6 +17,8 @@ double aspi_uniform(aspi_trial *t)
     return (double)(z >> 11) * 0x1p-53;
 }
 
+double aspi_next(void *trial) { return aspi_uniform((aspi_trial *)trial); }
+
 asp_vec3 aspi_random_direction(aspi_trial *t)
 {
     double z = 2 * aspi_uniform(t) - 1, phi = 2 * ASPI_PI * aspi_uniform(t);
