@@ -3,9 +3,9 @@
  * Read three times: this head, then the body in each precision. */
 #ifndef REAL
 #include "asperity.h"
+#include "splitmix.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,15 +13,6 @@ enum { N = 3001 };                     /* blocks and a rest */
 
 static int passed, failed;
 static uint64_t state = 1;
-
-/* splitmix64, Steele et al. 2014 */
-static double next(void *from)
-{
-    uint64_t *s = from, z = (*s += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
 
 static double uniform(void) { return next(&state); }
 

@@ -2,38 +2,9 @@
  *
  * Without absorption the albedo is 1 - T + E, with E that of single scattering and 1 - T what the table gives
  * back: single scattering is added up over its own samples and the rest, which is smooth, over a lattice. */
-#include "asperity.h"
+#include "scatter_test.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
-#define PI 3.14159265358979323846
 #define COUNT(a) (sizeof (a) / sizeof *(a))
-
-static int passed, failed;
-
-static void expect(int ok, const char *what, double worst)
-{
-    printf("%s %s: %.3g\n", ok ? "ok    " : "FAILED", what, worst);
-    passed += ok != 0;
-    failed += ok == 0;
-}
-
-static int material(const char *spec, asp_material *mat)
-{
-    asp_error err;
-    if (asp_material_parse(NULL, spec, mat, &err) == ASP_OK)
-        return 1;
-    printf("FAILED %s: %s %s\n", spec, err.name, err.reason);
-    failed++;
-    return 0;
-}
-
-static asp_vec3 direction(double theta, double phi)
-{
-    return (asp_vec3){ sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta) };
-}
 
 /* Mean weight of the samples of n points of a lattice, bent so that the integrand is periodic. */
 static double single(const asp_material *mat, asp_vec3 wi, int n)
@@ -74,12 +45,10 @@ static void check(const char *model, const char *part_model, int sides, const ro
         double more = 0, less = 0, mean = 0, worst;
         int n = 0;
         snprintf(spec, sizeof spec, "%s,ndf=(%s)", model, rows[r].ndf);
-        if (!material(spec, &whole))
-            continue;
+        whole = material(spec);
         if (part_model) {
             snprintf(spec, sizeof spec, "%s,ndf=(%s)", part_model, rows[r].ndf);
-            if (!material(spec, &part))
-                continue;
+            part = material(spec);
             part.mask = whole.mask;
         } else {
             part = asp_mirror(&whole.ndf, whole.mask);
@@ -115,10 +84,8 @@ static void check_turquin(void)
     };
     double worst = 0;
     for (size_t i = 0; i < COUNT(specs); i++) {
-        asp_material mat;
+        asp_material mat = material(specs[i]);
         double off = 0;
-        if (!material(specs[i], &mat))
-            continue;
         for (int t = 0; t < 6; t++)
             for (int j = 0; j < 12; j++)
                 off = fmax(off, fabs(single(&mat, direction(0.02 + 0.3 * t, 0.5 * j), 6000) - 1));
@@ -145,6 +112,5 @@ int main(void)
     check("compensated:f0=1", NULL, 1, mirrors, COUNT(mirrors), 24, 2000);
     check("compensated_dielectric:transport=importance", "dielectric:transport=importance", 2, glass, COUNT(glass), 8, 4000);
     check_turquin();
-    printf("%d passed, %d failed\n", passed, failed);
-    return failed != 0;
+    return finish();
 }

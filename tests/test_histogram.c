@@ -5,6 +5,7 @@
  * themselves. */
 #include "asperity_data.h"
 #include "asperity_ndf.h"
+#include "splitmix.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,14 +24,7 @@ static void report(const char *what, double worst, double bound)
 
 static uint64_t state = 7;
 
-static double uniform(void)
-{
-    uint64_t z = (state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    z ^= z >> 31;
-    return (double)(z >> 11) * 0x1p-53;
-}
+static double uniform(void) { return next(&state); }
 
 static asp_vec3 direction(double low)
 {

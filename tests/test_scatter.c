@@ -1,59 +1,8 @@
 /* test_scatter.c - scattering models beyond the conductor: energy, limits, films, indices, samplers */
-#include "asperity.h"
+#include "scatter_test.h"
 
 #include <complex.h>
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
-
-static int passed, failed;
-
-static void expect(int ok, const char *what, double worst)
-{
-    printf("%s %s: %.3g\n", ok ? "ok    " : "FAILED", what, worst);
-    passed += ok != 0;
-    failed += ok == 0;
-}
-
-static double next(void *state)
-{
-    uint64_t *s = state, z;
-    *s += 0x9E3779B97F4A7C15u;
-    z = *s;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
-static asp_vec3 direction(double theta, double phi)
-{
-    return (asp_vec3){ sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta) };
-}
-
-static asp_material material(const char *spec)
-{
-    asp_material mat;
-    asp_error err;
-    if (asp_material_parse(NULL, spec, &mat, &err) != ASP_OK) {
-        printf("FAILED %s: %s %s\n", spec, err.name, err.reason);
-        failed++;
-        memset(&mat, 0, sizeof mat);
-    }
-    return mat;
-}
-
-static asp_ndf ndf(const char *spec)
-{
-    asp_ndf k;
-    if (asp_ndf_parse(NULL, spec, &k, NULL) != ASP_OK) {
-        printf("FAILED %s\n", spec);
-        failed++;
-    }
-    return k;
-}
 
 /* Mean weight over a lattice of (u1, u2, u3). */
 static double albedo(const asp_material *mat, asp_vec3 wi, int n)
@@ -576,6 +525,5 @@ int main(void)
     check_diffuse();
     check_eon();
     check_refusals();
-    printf("%d passed, %d failed\n", passed, failed);
-    return failed != 0;
+    return finish();
 }

@@ -2,42 +2,9 @@
  *
  * The surface is GGX with its own closed forms; reflectances are those of complex amplitudes; albedos are sums over
  * facets. Nothing of the library is used but what is tested. */
-#include "asperity.h"
+#include "scatter_test.h"
 
 #include <complex.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
-#define PI 3.14159265358979323846
-
-static int passed, failed;
-
-static void expect(int ok, const char *what, double worst)
-{
-    printf("%s %s: %.3g\n", ok ? "ok    " : "FAILED", what, worst);
-    passed += ok != 0;
-    failed += ok == 0;
-}
-
-static asp_vec3 direction(double theta, double phi)
-{
-    return (asp_vec3){ sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta) };
-}
-
-static asp_material material(const char *spec)
-{
-    asp_material mat;
-    asp_error err;
-    if (asp_material_parse(NULL, spec, &mat, &err) != ASP_OK) {
-        printf("FAILED %s: %s %s\n", spec, err.name, err.reason);
-        failed++;
-        memset(&mat, 0, sizeof mat);
-    }
-    return mat;
-}
-
-static double dot(asp_vec3 a, asp_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /* ---- the surface and a facet */
 
@@ -476,6 +443,5 @@ int main(void)
     check_refraction();
     check_film();
     check_spectrum();
-    printf("%d passed, %d failed\n", passed, failed);
-    return failed != 0;
+    return finish();
 }

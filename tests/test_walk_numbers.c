@@ -1,58 +1,15 @@
 /* test_walk_numbers.c - walks against a walk of the test's own, as the paper writes it (Heitz, Hanika, d'Eon,
  * Dachsbacher 2016): heights uniform in [-1, 1] and drawn at each flight, no roulette, and GGX by its own formulas
  * (normals by the cap of Dupuy, Benyoub 2023). And asp_walk_pdf as a density. */
-#include "asperity.h"
+#include "scatter_test.h"
 
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 #if defined(__SANITIZE_ADDRESS__)
 #define WALKS 40000
 #else
 #define WALKS 400000
 #endif
-
-static int passed, failed;
-
-static void expect(int ok, const char *what, double worst)
-{
-    printf("%s %s: %.3g\n", ok ? "ok    " : "FAILED", what, worst);
-    passed += ok != 0;
-    failed += ok == 0;
-}
-
-static double next(void *state)
-{
-    uint64_t *s = state, z;
-    *s += 0x9E3779B97F4A7C15u;
-    z = *s;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
-static asp_vec3 direction(double theta, double phi)
-{
-    return (asp_vec3){ sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta) };
-}
-
-static asp_material material(const char *spec)
-{
-    asp_material mat;
-    asp_error err;
-    if (asp_material_parse(NULL, spec, &mat, &err) != ASP_OK) {
-        printf("FAILED %s: %s %s\n", spec, err.name, err.reason);
-        failed++;
-        memset(&mat, 0, sizeof mat);
-    }
-    return mat;
-}
-
-static double dot(asp_vec3 a, asp_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 static asp_vec3 minus(asp_vec3 a) { return (asp_vec3){ -a.x, -a.y, -a.z }; }
 
@@ -290,6 +247,5 @@ int main(void)
 {
     check_walks();
     check_density();
-    printf("%d passed, %d failed\n", passed, failed);
-    return failed != 0;
+    return finish();
 }
