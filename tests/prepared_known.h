@@ -2,6 +2,7 @@
  *
  * shape[0] = 1/n: 1 is GGX, 0 Beckmann. A distribution as src/ndf has them, for test_prepared.c alone. */
 #ifndef ASP_PRECISION
+#define ASP_NO_CLONES 1    /* one instruction set is enough here */
 #include "asperity_ndf.h"
 #include "ndf/prepared.h"
 

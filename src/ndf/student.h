@@ -75,6 +75,9 @@ enum {
 /* Fills out->table for n > 1/2, infinity included. */
 void aspi_student_prepare(asp_ndf *out, double n);
 
+/* The part of it that D and float64's sigma read. */
+void aspi_student_prepare_area(asp_ndf *out, double n);
+
 /* The part of it in student_tables.c: from the rest of the table. */
 void aspi_student_fit(asp_ndf *out);
 

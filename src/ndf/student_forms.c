@@ -32,7 +32,7 @@ static double form_exact(double gamma, double nu)
 {
     asp_ndf k;
     memset(&k, 0, sizeof k);
-    aspi_student_prepare(&k, gamma - 1);
+    aspi_student_prepare_area(&k, gamma - 1);
     k.map.m00 = k.map.m11 = 1;
     return asp_model_student_t.f64.sigma(&k, 1, 0, -nu) / nu;
 }

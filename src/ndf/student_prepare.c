@@ -165,13 +165,13 @@ static void student_quantile(double m, double t0, const double b[24], double end
     }
 }
 
-void aspi_student_prepare(asp_ndf *out, double n_wanted)
+/* 2^58 is infinity: the density's relative error is then x^2/(2n) < 1e-12 for e^-x > 1e-308 */
+static double student_n(double n) { return n < 0x1p58 ? n : 0x1p58; }
+
+void aspi_student_prepare_area(asp_ndf *out, double n_wanted)
 {
     const double a = STUDENT_A;
-    /* 2^58 is infinity: the density's relative error is then x^2/(2n) < 1e-12 for e^-x > 1e-308 */
-    double n = n_wanted < 0x1p58 ? n_wanted : 0x1p58, m = n + 0.5;
-    double p[STUDENT_NODES], b[STUDENT_NODES], bm[24], low = a / (a + sqrt(n)), t0;
-    double *t = out->table;
+    double n = student_n(n_wanted), p[STUDENT_NODES], b[STUDENT_NODES], low = a / (a + sqrt(n)), *t = out->table;
 
     memset(t, 0, sizeof out->table);
     student_split(1 / n, t + STUDENT_INVN);
@@ -189,10 +189,15 @@ void aspi_student_prepare(asp_ndf *out, double n_wanted)
     aspi_student_coefficients(p, 24, t + STUDENT_P64);
     aspi_student_coefficients(b, 12, t + STUDENT_B32);
     aspi_student_coefficients(b, 24, t + STUDENT_B64);
+}
 
+void aspi_student_prepare(asp_ndf *out, double n)
+{
+    double m = student_n(n) + 0.5, p[STUDENT_NODES], b[STUDENT_NODES], bm[24], t0, *t = out->table;
+    aspi_student_prepare_area(out, n);
     t[STUDENT_Y_N] = m;
     t[STUDENT_Y_N + 1] = 1 / m;
-    t[STUDENT_Y_WIDTH] = sqrt(n / m);
+    t[STUDENT_Y_WIDTH] = sqrt(student_n(n) / m);
     student_nodes(m, student_m0(m), p, b);
     aspi_student_coefficients(b, 24, bm);
     t0 = student_m0(m) * (2 * m - 1) / (2 * m);
