@@ -301,6 +301,7 @@ asp_status asp_index_of_f82(double f0, double tint, double *eta, double *k, asp_
  *     compensated:metal=Au,form=kulla_conty,ndf=(beckmann:alpha=0.8)    (energy given back:
  *         without absorption albedo 1 to 0.003, skewed 0.03 near grazing; docs/materials.md)
  *     compensated_dielectric:eta=1.5,form=kulla_conty,ndf=(ggx:alpha=0.6)  (the same for both sides of glass)
+ *     dielectric:eta=1.5,film=400,film_eta=1.8,ndf=(ggx:alpha=0.2)      (the same on glass, from both sides)
  *     dielectric:eta=1.5,transport=radiance,ndf=(ggx:alpha=0.2)         plastic:albedo=0.4/0.1/0.1,eta=1.5,ndf=(ggx)
  *     rough_diffuse:albedo=0.8,form=eon,ndf=(beckmann:alpha=1)
  *     lambert_specular:diffuse=0.2/0.1/0.05,specular=1,eta=1.5,ndf=(ggx:alpha=0.2) */
@@ -343,6 +344,12 @@ asp_material asp_lambert_specular(const asp_ndf *ndf, asp_rgb diffuse, asp_rgb s
 /* A dielectric: reflection and refraction, wi and wo on either side. eta = interior/exterior, [0.01, 100];
  * 1 is no boundary: sample passes straight on with weight 1 and density 0, eval is 0. thin: 1 for a sheet. */
 asp_material asp_dielectric(const asp_ndf *ndf, double eta, int thin, int transport, int mask);
+
+/* Lays a film of index film_eta, [1, 10], and `thickness` nm, (0, 10000], on every facet of a conductor, a dielectric
+ * (from both sides; a sheet's both faces), a compensated conductor or a Lambert + rough reflection: three channels in
+ * linear sRGB, by 41 wavelengths. metal: one of asp_metals() beneath, with its spectrum, or NULL for the material's own
+ * index. ASP_EINVAL where there is none, where a dielectric's is 1, and of other materials: mat is as it was. */
+asp_status asp_film(asp_material *mat, const asp_metal *metal, double film_eta, double thickness, asp_error *err);
 
 /* Lambertian facets of an albedo in [0, 1]; eval is a quadrature of 466 nodes. Its relative error, above
  * cosines of 0.1: about 1e-3, at most 0.02; it grows near grazing (0.1 for ggx of alpha 0.3). */

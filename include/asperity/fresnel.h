@@ -6,7 +6,7 @@
 #define ASP_FRESNEL_NAMES
 #define aspi_unit_cosine ASP_NAME(aspi_unit_cosine)
 #define aspi_fresnel_dielectric ASP_NAME(aspi_fresnel_dielectric)
-#define aspi_dielectric_between ASP_NAME(aspi_dielectric_between)
+#define aspi_other_side2 ASP_NAME(aspi_other_side2)
 #define aspi_fresnel_conductor ASP_NAME(aspi_fresnel_conductor)
 #define aspi_conductor_ratio ASP_NAME(aspi_conductor_ratio)
 #define aspi_fresnel_conductor_at ASP_NAME(aspi_fresnel_conductor_at)
@@ -28,25 +28,23 @@ ASP_FN asp_real aspi_unit_cosine(asp_real c)
     return low > R(1.0) ? R(1.0) : low;
 }
 
-/* Walter et al. 2007, eq. 22, over one denominator; g is eta times the cosine on the other side. */
-ASP_FN asp_real aspi_dielectric_between(asp_real c, asp_real g)
+/* The square of g, eta times the cosine on the other side; below 0 is total internal reflection. */
+ASP_FN asp_real aspi_other_side2(asp_real c, asp_real eta)
 {
-    asp_real difference = g - c, sum = g + c;
-    asp_real p = c * sum - R(1.0), q = c * difference + R(1.0);
-    asp_real over = sum * sum * (q * q);
-    return R(0.5) * (difference * difference) * (q * q + p * p) / (over < R(1e-30) ? R(1e-30) : over);
-}
-
-/* g^2 < 0 is total internal reflection. */
-ASP_FN asp_real aspi_fresnel_dielectric(asp_real cosine, asp_real eta)
-{
-    asp_real c = aspi_unit_cosine(cosine);
     /* each form keeps its digits where the other cancels: eta near 1, and eta near 0 */
     asp_real near = (eta - R(1.0)) * (eta + R(1.0)) + c * c;
     asp_real small = eta * eta - (R(1.0) - c) * (R(1.0) + c);
-    asp_real g2 = eta < R(0.5) ? small : near;
-    asp_real g = aspi_sqrt(g2 < R(0.0) ? R(0.0) : g2);
-    asp_real f = aspi_dielectric_between(c, g);
+    return eta < R(0.5) ? small : near;
+}
+
+/* Walter et al. 2007, eq. 22, over one denominator. */
+ASP_FN asp_real aspi_fresnel_dielectric(asp_real cosine, asp_real eta)
+{
+    asp_real c = aspi_unit_cosine(cosine), g2 = aspi_other_side2(c, eta);
+    asp_real g = aspi_sqrt(g2 < R(0.0) ? R(0.0) : g2), difference = g - c, sum = g + c;
+    asp_real p = c * sum - R(1.0), q = c * difference + R(1.0);
+    asp_real over = sum * sum * (q * q);
+    asp_real f = R(0.5) * (difference * difference) * (q * q + p * p) / (over < R(1e-30) ? R(1e-30) : over);
     return g2 < R(0.0) ? R(1.0) : f;
 }
 

@@ -76,6 +76,9 @@ struct asp_bsdf {
                      float *const wo[3], float *pdf, float *const weight[3]);
 };
 
+/* Does it know the key `name`? */
+int aspi_bsdf_has(const asp_bsdf *model, const char *name);
+
 /* Does light cross it? Then it is there from both sides. */
 int aspi_bsdf_crosses(const asp_bsdf *model);
 
@@ -90,8 +93,12 @@ asp_status aspi_parse_compensation(aspi_spec *spec, asp_material *out, asp_error
 /* The forms of rough_diffuse, out->b.r. */
 enum { ROUGH_EXACT, ROUGH_OREN_NAYAR, ROUGH_FUJII, ROUGH_EON, ROUGH_FORMS };
 
-/* Fills the film's table: linear sRGB reflectance over the cosine. metal: NULL for out->c + i out->d. */
-void aspi_film_prepare(asp_material *out, const asp_metal *metal, double film_eta, double thickness);
+/* asp_film but for ranges and for the model's own tables: linear sRGB reflectance over the cosine, of a dielectric
+ * over that on its less dense side. */
+asp_status aspi_film(asp_material *out, const asp_metal *metal, double film_eta, double thickness, asp_error *err);
+
+/* The keys film and film_eta, over a metal or, NULL, over out->c + i out->d. */
+asp_status aspi_parse_film(aspi_spec *spec, const asp_metal *metal, asp_material *out, asp_error *err);
 
 /* The keys that name a Fresnel term: metal, eta with k, eta alone, f0 with tint. `initial` is taken
  * when none is given. */
@@ -103,6 +110,8 @@ asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material 
     { "k", "extinction coefficient" }, \
     { "f0", "reflectance at normal incidence, Schlick's term" }, \
     { "tint", "with f0: factor at 82 degrees (F82-tint), 0 to 2, 1 = Schlick" }, \
+    ASPI_FILM_KEYS
+#define ASPI_FILM_KEYS \
     { "film", "thickness in nm of a thin film on it, up to 10000" }, \
     { "film_eta", "index of the film, 1 to 10, default 1.33" }
 

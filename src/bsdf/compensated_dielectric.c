@@ -121,7 +121,7 @@ ASP_FN asp_real given_back(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
 {
     int inside = wi.z < R(0.0), crosses = inside != (wo.z < R(0.0));
     int scales = crosses && aspi_crossing_scales(mat->transport, mat->a.r);
-    asp_real A, scale = aspi_crossing_scale(inside ? R(1.0) / mat->c.r : mat->c.r, scales);
+    asp_real A, scale = aspi_crossing_scale(inside ? mat->c.r : R(1.0) / mat->c.r, scales);
     if (mat->b.r == R(COMPENSATED_TURQUIN) || mat->c.r == R(1.0) || wi.z == R(0.0) || wo.z == R(0.0))
         return R(0.0);
     A = crosses ? (inside ? mat->d.g : mat->d.r) : (inside ? mat->b.b : mat->b.g);

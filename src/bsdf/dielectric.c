@@ -34,10 +34,11 @@ static asp_status dielectric_parse(aspi_spec *spec, asp_material *out, asp_error
     out->fresnel = ASPI_FRESNEL_DIELECTRIC;
     out->c.r = out->c.g = out->c.b = eta;
     out->a.r = out->a.g = out->a.b = thin;
-    return s;
+    /* its kin know no films */
+    return s || !aspi_bsdf_has(out->model, "film") ? s : aspi_parse_film(spec, NULL, out, err);
 }
 
-static const aspi_bsdf_key dielectric_keys[] = { ASPI_DIELECTRIC_KEYS, { NULL, NULL } };
+static const aspi_bsdf_key dielectric_keys[] = { ASPI_DIELECTRIC_KEYS, ASPI_FILM_KEYS, { NULL, NULL } };
 
 ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
     "dielectric", "Rough dielectric", "Walter et al. 2007, eqs. 20-21", dielectric_keys, 0,
@@ -48,6 +49,7 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #include "asperity/elementary.h"
 #include "bsdf/beta.h"
 #include "bsdf/bsdf_number.h"
+#include "bsdf/facet_fresnel.h"
 #include "bsdf/ops.h"
 #include "bsdf/reflection.h"
 #include "bsdf/refraction.h"
@@ -76,23 +78,43 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define sample_as ASP_NDF_NAME(_sample_as)
 #define sample_thin ASP_NDF_NAME(_sample_thin)
 #define nothing_of ASP_NDF_NAME(_nothing_of)
-#define crossing_scale ASP_NDF_NAME(_crossing_scale)
+#define sample_film ASP_NDF_NAME(_sample_film)
+#define sheets ASP_NDF_NAME(_sheets)
 #define crossing_weight ASP_NDF_NAME(_crossing_weight)
 #define staying_weight ASP_NDF_NAME(_staying_weight)
 #endif
 
-/* A pair of directions with wi above: which facet joins them, and F there. */
+/* By time reversal a film that absorbs nothing looks alike from both sides: its table is over the cosine on the less
+ * dense one, where light is never reflected totally. */
+void aspi_film_shares(const asp_mat *mat, asp_real c, asp_real eta, asp_real F[3])
+{
+    asp_real u = aspi_unit_cosine(c), g2 = aspi_other_side2(u, eta);
+    int i;
+    aspi_film_colours(mat, eta < R(1.0) ? aspi_sqrt(aspi_max(g2, R(0.0))) / eta : u, F);
+    for (i = 0; i < 3; i++)
+        F[i] = g2 <= R(0.0) ? R(1.0) : F[i];
+}
+
+/* A pair of directions with wi above: which facet joins them, and F there, in the mean and of each channel. */
 typedef struct case_of {
     asp_v3 wi, wo, m;
     asp_real eta, c, wm, F;      /* wi.m, wo.m */
+    asp_real colours[3];
     asp_real sigma_i;
     int refracts, dark;
 } case_of;
 
 /* F with the reflections inside a sheet summed up. */
-ASP_FN asp_real sheet(asp_real F, int thin) { return thin ? R(2.0) * F / (R(1.0) + F) : F; }
+ASP_FN asp_real sheet(asp_real F) { return R(2.0) * F / (R(1.0) + F); }
 
-/* wi above, seen from its side. */
+ASP_FN void sheets(asp_real F[3])
+{
+    F[0] = sheet(F[0]);
+    F[1] = sheet(F[1]);
+    F[2] = sheet(F[2]);
+}
+
+/* wi above, seen from its side; without F. */
 ASP_FN case_of case_at(asp_v3 wi, asp_v3 wo, asp_real eta, int thin)
 {
     case_of k;
@@ -107,7 +129,6 @@ ASP_FN case_of case_at(asp_v3 wi, asp_v3 wo, asp_real eta, int thin)
         k.m = aspi_half_vector(k.wi, k.wo);
     k.c = aspi_dot(k.wi, k.m);
     k.wm = aspi_dot(k.wo, k.m);
-    k.F = sheet(aspi_fresnel_dielectric(k.c, eta), thin);
     return k;
 }
 
@@ -126,6 +147,10 @@ ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo, int thin)
     case_of k = case_at(aspi_turned(wi, sign, thin), aspi_turned(wo, sign, thin), eta, thin);
     k.dark = !lit(&k, thin) || mat->c.r == R(1.0);
     k.sigma_i = aspi_sigma_of(&mat->ndf, k.wi);
+    aspi_reflected_shares(mat, k.c, eta, k.colours);
+    if (thin)
+        sheets(k.colours);
+    k.F = aspi_mean_share(mat, k.colours);
     return k;
 }
 
@@ -160,19 +185,16 @@ ASP_FN asp_real joint_reflected(const asp_shape *shape, asp_v3 wi, asp_v3 wo, as
     return aspi_joint(wi.z, wo.z, si, so, mz, c, c, mask);
 }
 
-/* f of what stays on its side, by `share`, F or 1 - F, and by J = G2/(ci co); and of what crosses, times co. */
-ASP_FN asp_real staying_value(asp_real share, asp_real D, asp_real J)
-{
-    return share * aspi_finite(R(0.25) * D * J);
-}
+/* f, but for the share F or 1 - F, of what stays on its side by J = G2/(ci co); and of what crosses, times co. */
+ASP_FN asp_real staying_value(asp_real D, asp_real J) { return aspi_finite(R(0.25) * D * J); }
 
 ASP_FN asp_real crossing_value(const case_of *k, asp_real D, asp_real G2, asp_real scale)
 {
-    return (R(1.0) - k->F) * aspi_finite(k->c * D * aspi_bent_density(k->c, k->wm, k->eta) * G2 / k->wi.z) * scale;
+    return aspi_finite(k->c * D * aspi_bent_density(k->c, k->wm, k->eta) * G2 / k->wi.z) * scale;
 }
 
 /* f times |cos_o|^cosine. */
-ASP_FN asp_real eval_as(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, int thin, int mask)
+ASP_FN asp_c3 eval_as(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, int thin, int mask)
 {
     case_of k = make_case(mat, *wi, *wo, thin);
     asp_real f = k.c * R(0.0), D, so, co = aspi_abs(wo->z);
@@ -180,8 +202,7 @@ ASP_FN asp_real eval_as(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, 
         D = aspi_density_of(&mat->ndf, k.m);
         if (!k.refracts || thin) {
             so = aspi_sigma_of(&mat->ndf, k.wo);
-            f = staying_value(k.refracts ? R(1.0) - k.F : k.F, D,
-                              joint_reflected(&mat->ndf, k.wi, k.wo, k.sigma_i, so, k.m.z, k.c, mask));
+            f = staying_value(D, joint_reflected(&mat->ndf, k.wi, k.wo, k.sigma_i, so, k.m.z, k.c, mask));
             f = cosine ? f * co : f;
         } else {
             asp_v3 below = aspi_turned(k.wo, R(-1.0), 0);
@@ -189,19 +210,19 @@ ASP_FN asp_real eval_as(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, 
             so = aspi_sigma_of(&mat->ndf, below);
             b = area_over(&mat->ndf, below, so, inverse_of(co), mask);
             f = crossing_value(&k, D, refracted_masking(a, b, k.m.z, k.wi.z, co, k.c, -k.wm, mask),
-                               aspi_crossing_scale(k.eta, aspi_crossing_scales(mat->transport, mat->a.r)));
+                               aspi_crossing_scale(R(1.0) / k.eta, aspi_crossing_scales(mat->transport, mat->a.r)));
             f = cosine ? f : f / co;
         }
+        f *= k.refracts ? R(1.0) - k.F : k.F;
     }
-    return f;
+    return aspi_tinted(mat, k.colours, k.F, k.refracts, f);
 }
 
 static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, asp_c3 *out)
 {
     /* constants spare the default the others' arithmetic */
     int thin = mat->a.r > R(0.0);
-    out->r = out->g = out->b = !thin && mat->mask == 0 ? eval_as(mat, wi, wo, cosine, 0, 0)
-                                                      : eval_as(mat, wi, wo, cosine, thin, mat->mask);
+    *out = !thin && mat->mask == 0 ? eval_as(mat, wi, wo, cosine, 0, 0) : eval_as(mat, wi, wo, cosine, thin, mat->mask);
 }
 
 /* Density of wo by the facet of a case that is not dark. */
@@ -240,12 +261,6 @@ ASP_FN asp_real crossing_weight(asp_real sigma_i, asp_real over_cosine, asp_real
     return aspi_finite(sigma_i * over_cosine) * scale;
 }
 
-/* What crosses is scaled so, from 1/eta. */
-ASP_FN asp_real crossing_scale(const asp_mat *mat, asp_real inverse)
-{
-    return aspi_crossing_scales(mat->transport, mat->a.r) ? inverse * inverse : R(1.0);
-}
-
 ASP_FN asp_real staying_weight(const asp_shape *shape, asp_v3 wi, asp_v3 wo, asp_real sigma_i, asp_real sigma_o,
                                asp_real mz, asp_real c, int mask)
 {
@@ -281,7 +296,7 @@ ASP_FN asp_sampled sample_as(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_rea
         asp_real over_i = inverse_of(v.z), a = area_over(shape, v, s.sigma_i, over_i, mask), b;
         up = -wo.z;
         b = area_over(shape, aspi_turned(wo, R(-1.0), 0), s.sigma_o, inverse_of(up), mask);
-        weight = crossing_weight(s.sigma_i, over_i, crossing_scale(mat, over))
+        weight = crossing_weight(s.sigma_i, over_i, aspi_crossing_scale(over, aspi_crossing_scales(mat->transport, mat->a.r)))
                * refracted_masking(a, b, s.m_z * scale, v.z, up, s.wi_m * scale, over * s.wo_m * scale, mask);
     } else {
         up = wo.z;
@@ -294,27 +309,68 @@ ASP_FN asp_sampled sample_as(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_rea
     return out;
 }
 
+/* The same under a film, with the probability of the channels' mean share and weights of their own. */
+static asp_sampled sample_film(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
+{
+    const asp_shape *shape = &mat->ndf;
+    asp_real sign = wi.z < R(0.0) ? R(-1.0) : R(1.0), nothing = aspi_abs((wi.x + wi.y + wi.z) * R(0.0));
+    asp_real m[3], so, up, weight;
+    asp_sampled out;
+    case_of k;
+    k.wi = aspi_turned(wi, sign, 0);
+    if (k.wi.z <= R(0.0) || nothing != R(0.0))
+        return nothing_of(wi, nothing);
+    ASPI_OPS(shape).visible(shape, k.wi.x, k.wi.y, k.wi.z, u1, u2, m);
+    k.m = aspi_vector(m[0], m[1], m[2]);
+    k.eta = index_of(sign, mat->c.r, R(1.0) / mat->c.r);
+    k.c = aspi_dot(k.wi, k.m);
+    k.sigma_i = aspi_sigma_of(shape, k.wi);
+    aspi_reflected_shares(mat, k.c, k.eta, k.colours);
+    k.F = aspi_mean_share(mat, k.colours);
+    k.refracts = u3 >= k.F;
+    k.wo = lengthened(k.refracts ? aspi_refract(k.wi, k.m, k.eta) : aspi_reflect(k.wi, k.m), R(1.0));
+    k.wm = aspi_dot(k.wo, k.m);
+    up = k.refracts ? -k.wo.z : k.wo.z;
+    so = aspi_sigma_of(shape, aspi_turned(k.wo, k.refracts ? R(-1.0) : R(1.0), 0));
+    if (k.refracts) {
+        asp_real over_i = inverse_of(k.wi.z), a = area_over(shape, k.wi, k.sigma_i, over_i, mat->mask);
+        asp_real b = area_over(shape, aspi_turned(k.wo, R(-1.0), 0), so, inverse_of(up), mat->mask);
+        weight = crossing_weight(k.sigma_i, over_i,
+                                 aspi_crossing_scale(R(1.0) / k.eta, aspi_crossing_scales(mat->transport, R(0.0))))
+               * refracted_masking(a, b, k.m.z, k.wi.z, up, k.c, -k.wm, mat->mask);
+    } else {
+        weight = staying_weight(shape, k.wi, k.wo, k.sigma_i, so, k.m.z, k.c, mat->mask);
+    }
+    out.pdf = up <= R(0.0) ? R(0.0) : facet_density(&k, aspi_density_of(shape, k.m), 0);
+    out.wo = aspi_turned(k.wo, sign, 0);
+    out.weight = aspi_tinted(mat, k.colours, k.F, k.refracts, up <= R(0.0) ? R(0.0) : weight);
+    return out;
+}
+
 /* A sheet: what passes leaves in the mirror image of what is reflected. */
 static asp_sampled sample_thin(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3)
 {
     const asp_shape *shape = &mat->ndf;
     asp_real sign = wi.z < R(0.0) ? R(-1.0) : R(1.0), nothing = aspi_abs((wi.x + wi.y + wi.z) * R(0.0));
-    asp_real weight, c, F, share;
+    asp_real weight, c, F, colours[3];
     asp_v3 v = aspi_turned(wi, sign, 1), wo;
     asp_mirrored s;
     asp_sampled out;
+    int passes;
     if (v.z <= R(0.0) || nothing != R(0.0))
         return nothing_of(wi, nothing);
     ASPI_OPS(shape).reflect(shape, v.x, v.y, v.z, u1, u2, &s);
     c = aspi_sqrt(aspi_unit_cosine(s.cosine2));
-    F = sheet(aspi_fresnel_dielectric(c, mat->c.r), 1);
-    share = u3 >= F ? R(1.0) - F : F;
+    aspi_reflected_shares(mat, c, mat->c.r, colours);
+    sheets(colours);
+    F = aspi_mean_share(mat, colours);
+    passes = u3 >= F;
     wo = aspi_vector(s.wo_x, s.wo_y, s.wo_z);
     weight = staying_weight(shape, v, wo, s.sigma_i, s.sigma_o, aspi_sqrt(aspi_above(s.m_z2)), c, mat->mask);
-    out.pdf = wo.z <= R(0.0) ? R(0.0) : share * s.pdf;
+    out.pdf = wo.z <= R(0.0) ? R(0.0) : (passes ? R(1.0) - F : F) * s.pdf;
     weight = wo.z <= R(0.0) ? R(0.0) : weight;
-    out.wo = aspi_turned(lengthened(wo, R(1.0)), u3 >= F ? -sign : sign, 1);
-    out.weight.r = out.weight.g = out.weight.b = weight;
+    out.wo = aspi_turned(lengthened(wo, R(1.0)), passes ? -sign : sign, 1);
+    out.weight = aspi_tinted(mat, colours, F, passes, weight);
     return out;
 }
 
@@ -325,6 +381,8 @@ ASP_CLONES_SINGLE static asp_sampled bsdf_sample(const asp_mat *mat, asp_v3 wi, 
     /* constants spare the default the others' arithmetic */
     if (mat->a.r > R(0.0) && mat->c.r != R(1.0))
         return sample_thin(mat, wi, u1, u2, u3);
+    if (mat->fresnel == ASPI_FRESNEL_FILM)
+        return sample_film(mat, wi, u1, u2, u3);
     if (mat->c.r != R(1.0))
         return mat->mask == 0 ? sample_as(mat, wi, u1, u2, u3, 0) : sample_as(mat, wi, u1, u2, u3, mat->mask);
     /* nothing is there: the light goes on */
@@ -334,8 +392,11 @@ ASP_CLONES_SINGLE static asp_sampled bsdf_sample(const asp_mat *mat, asp_v3 wi, 
     return out;
 }
 
-/* Half spaces with the default masking, which blocks are for. */
-ASP_FN int plain(const asp_mat *mat) { return !(mat->a.r > R(0.0)) && mat->c.r != R(1.0) && mat->mask == 0; }
+/* Bare half spaces with the default masking, which blocks are for. */
+ASP_FN int plain(const asp_mat *mat)
+{
+    return !(mat->a.r > R(0.0)) && mat->c.r != R(1.0) && mat->mask == 0 && mat->fresnel != ASPI_FRESNEL_FILM;
+}
 
 /* A block of pairs: wi and wo turned up, the facets that join them, D and sigma. */
 typedef struct joined {
@@ -366,7 +427,7 @@ ASP_FN void join_n(const asp_mat *mat, size_t n, const asp_real *const wi[3], co
         j->mz[i] = k.m.z;
         j->c[i] = k.c;
         j->wm[i] = k.wm;
-        j->F[i] = k.F;
+        j->F[i] = aspi_fresnel_dielectric(k.c, eta);
         j->eta[i] = eta;
         j->side[i] = up;
     }
@@ -394,7 +455,7 @@ ASP_CLONES static int bsdf_eval_n(const asp_mat *mat, size_t n, const asp_real *
 {
     const asp_shape *shape = &mat->ndf;
     int scales = aspi_crossing_scales(mat->transport, mat->a.r);
-    asp_real above = aspi_crossing_scale(mat->c.r, scales), below = aspi_crossing_scale(R(1.0) / mat->c.r, scales);
+    asp_real above = aspi_crossing_scale(R(1.0) / mat->c.r, scales), below = aspi_crossing_scale(mat->c.r, scales);
     asp_real A[ASP_BLOCK], B[ASP_BLOCK], G2[ASP_BLOCK];
     int far[ASP_BLOCK];
     const asp_real *iz = wi[2];
@@ -418,12 +479,12 @@ ASP_CLONES static int bsdf_eval_n(const asp_mat *mat, size_t n, const asp_real *
     for (i = 0; i < n; i++) {
         case_of k = joined_case(&j, i);
         asp_real co = k.wo.z, J = joint_reflected(shape, k.wi, k.wo, k.sigma_i, j.so[i], R(0.0), R(0.0), 0);
-        asp_real stays = staying_value(k.F, j.D[i], J);
+        asp_real stays = staying_value(j.D[i], J);
         asp_real crosses = crossing_value(&k, j.D[i], G2[i], index_of(iz[i], above, below));
         asp_real f;
         stays = cosine ? stays * co : stays;
         crosses = cosine ? crosses : crosses / co;
-        f = aspi_select(k.refracts, crosses, stays);
+        f = aspi_select(k.refracts, (R(1.0) - k.F) * crosses, k.F * stays);
         out[i] = aspi_select(lit(&k, 0), f, k.c * R(0.0));
     }
     return 1;
@@ -457,7 +518,8 @@ ASP_CLONES static int bsdf_sample_n(const asp_mat *mat, size_t n, const asp_real
     asp_real A[ASP_BLOCK], B[ASP_BLOCK], G2[ASP_BLOCK];
     int far[ASP_BLOCK];
     asp_real index = mat->c.r, inverse = R(1.0) / mat->c.r;
-    asp_real above = crossing_scale(mat, inverse), below = crossing_scale(mat, index);
+    int scales = aspi_crossing_scales(mat->transport, mat->a.r);
+    asp_real above = aspi_crossing_scale(inverse, scales), below = aspi_crossing_scale(index, scales);
     asp_split_rays out;
     size_t i;
     if (!plain(mat) || !n)

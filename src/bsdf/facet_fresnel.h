@@ -10,6 +10,7 @@
 #define aspi_fresnel ASP_NAME(aspi_fresnel)
 #define aspi_fresnel_metal ASP_NAME(aspi_fresnel_metal)
 #define aspi_fresnel_film ASP_NAME(aspi_fresnel_film)
+#define aspi_film_colours ASP_NAME(aspi_film_colours)
 #endif
 
 #if (ASP_PRECISION == 64 && !defined(ASPI_FACET_FRESNEL_64)) || \
@@ -30,6 +31,13 @@ ASP_FN asp_real aspi_fresnel_film(const asp_real *f, asp_real c)
     y = f[i] * weight[0] + f[i + 1] * weight[1] + f[i + 2] * weight[2] + f[i + 3] * weight[3];
     y = y < R(0.0) ? R(0.0) : y;
     return y > R(1.0) ? R(1.0) : y;
+}
+
+ASP_FN void aspi_film_colours(const asp_mat *mat, asp_real c, asp_real F[3])
+{
+    F[0] = aspi_fresnel_film(mat->energy + ENERGY_FILM, c);
+    F[1] = aspi_fresnel_film(mat->energy + ENERGY_FILM + ENERGY_FILM_NODES, c);
+    F[2] = aspi_fresnel_film(mat->energy + ENERGY_FILM + 2 * ENERGY_FILM_NODES, c);
 }
 
 /* The metal's three channels side by side, which the compiler makes one vector of four. */
@@ -80,9 +88,7 @@ ASP_FN void aspi_fresnel(const asp_mat *mat, asp_real c2, asp_real by, asp_real 
         F[0] = F[1] = F[2] = aspi_fresnel_dielectric(c, mat->c.r);
         break;
     case ASPI_FRESNEL_FILM:
-        F[0] = aspi_fresnel_film(mat->energy + ENERGY_FILM, c);
-        F[1] = aspi_fresnel_film(mat->energy + ENERGY_FILM + ENERGY_FILM_NODES, c);
-        F[2] = aspi_fresnel_film(mat->energy + ENERGY_FILM + 2 * ENERGY_FILM_NODES, c);
+        aspi_film_colours(mat, c, F);
         break;
     default:
         F[0] = F[1] = F[2] = c == c ? R(1.0) : c;

@@ -161,38 +161,37 @@ static asp_status parse_bare(aspi_spec *spec, double initial_eta, asp_material *
     return ASP_OK;
 }
 
-asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material *out,
-                              asp_error *err)
+asp_status aspi_parse_film(aspi_spec *spec, const asp_metal *metal, asp_material *out, asp_error *err)
 {
-    const asp_metal *metal = NULL;
     double thickness = 0.0, film_eta = 1.33;
     int has_film, has_eta;
-    asp_status s = parse_bare(spec, initial_eta, out, &metal, err);
-    if (!s)
-        s = aspi_spec_ranged(spec, "film", 0.0, 1, 1e4, &thickness, &has_film, err);
+    asp_status s = aspi_spec_ranged(spec, "film", 0.0, 1, 1e4, &thickness, &has_film, err);
     if (!s)
         s = aspi_spec_ranged(spec, "film_eta", 1.0, 0, 10.0, &film_eta, &has_eta, err);
     if (s || !(has_film || has_eta))
         return s;
     if (!has_film)
         return aspi_spec_fail(spec, spec->text, ASP_EINVAL, "film", 4, "film_eta needs film, a thickness", err);
-    if (out->fresnel != ASPI_FRESNEL_CONDUCTOR && out->fresnel != ASPI_FRESNEL_METAL
-        && out->fresnel != ASPI_FRESNEL_DIELECTRIC)
-        return aspi_spec_fail(spec, spec->text, ASP_EINVAL, "film", 4,
-                              "a film needs metal or eta beneath it", err);
-    if (out->fresnel == ASPI_FRESNEL_DIELECTRIC)
-        out->c.g = out->c.b = out->c.r;
-    aspi_film_prepare(out, metal, film_eta, thickness);
-    return ASP_OK;
+    s = aspi_film(out, metal, film_eta, thickness, err);
+    return s ? aspi_spec_blame(spec, "film", s, err) : s;
 }
 
-int aspi_bsdf_crosses(const asp_bsdf *model)
+asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material *out, asp_error *err)
+{
+    const asp_metal *metal = NULL;
+    asp_status s = parse_bare(spec, initial_eta, out, &metal, err);
+    return s ? s : aspi_parse_film(spec, metal, out, err);
+}
+
+int aspi_bsdf_has(const asp_bsdf *model, const char *name)
 {
     const aspi_bsdf_key *key = model->keys;
-    while (key->name && strcmp(key->name, "transport"))
+    while (key->name && strcmp(key->name, name))
         key++;
     return key->name != NULL;
 }
+
+int aspi_bsdf_crosses(const asp_bsdf *model) { return aspi_bsdf_has(model, "transport"); }
 
 int asp_can_walk(const asp_material *mat)
 {

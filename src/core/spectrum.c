@@ -115,7 +115,7 @@ double asp_fresnel_film(double c, double film_eta, double thickness, double eta,
     return cosine <= 0.0 ? 1.0 : aspi_min(total, 1.0);
 }
 
-/* What aspi_film_prepare integrates over wavelengths. */
+/* What a film's table integrates over wavelengths. */
 typedef struct film {
     const asp_metal *metal;
     double c, film_eta, thickness, eta, k;
@@ -130,17 +130,18 @@ static double film_reflectance(const void *context, double nm)
     return asp_fresnel_film(f->c, f->film_eta, f->thickness, eta, k, nm);
 }
 
-void aspi_film_prepare(asp_material *out, const asp_metal *metal, double film_eta, double thickness)
+/* Of glass the cosine is that on its less dense side. */
+static void prepare_film(asp_material *out, const asp_metal *metal, double film_eta, double thickness)
 {
     const double eta[3] = { out->c.r, out->c.g, out->c.b }, k[3] = { out->d.r, out->d.g, out->d.b };
-    int i, channel;
+    int i, channel, turned = out->model->facets == ASPI_FACETS_REFRACT && out->c.r < 1.0;
     for (i = 0; i < ENERGY_FILM_NODES; i++)
         for (channel = 0; channel < 3; channel++) {
             film f;
             asp_rgb colour;
-            double value;
+            double value, c = (double)i / (ENERGY_FILM_NODES - 1);
             f.metal = metal;
-            f.c = (double)i / (ENERGY_FILM_NODES - 1);
+            f.c = turned && i ? aspi_sqrt(aspi_other_side2(c, 1.0 / eta[0])) * eta[0] : c;
             f.film_eta = film_eta;
             f.thickness = thickness;
             f.eta = eta[channel];
@@ -150,6 +151,32 @@ void aspi_film_prepare(asp_material *out, const asp_metal *metal, double film_et
             out->energy[ENERGY_FILM + channel * ENERGY_FILM_NODES + i] = aspi_min(aspi_max(value, 0.0), 1.0);
         }
     out->fresnel = ASPI_FRESNEL_FILM;
+}
+
+asp_status aspi_film(asp_material *out, const asp_metal *metal, double film_eta, double thickness, asp_error *err)
+{
+    if (out->fresnel == ASPI_FRESNEL_ONE || out->fresnel == ASPI_FRESNEL_F82)
+        return asp_fail(err, ASP_EINVAL, "film", "a film needs metal or eta beneath it");
+    if (out->model->facets == ASPI_FACETS_REFRACT && out->c.r == 1.0)
+        return asp_fail(err, ASP_EINVAL, "film", "on a dielectric a film needs an eta other than 1, which bends light");
+    prepare_film(out, metal, film_eta, thickness);
+    return ASP_OK;
+}
+
+asp_status asp_film(asp_material *mat, const asp_metal *metal, double film_eta, double thickness, asp_error *err)
+{
+    double eta, k;
+    asp_status s = metal ? asp_metal_index(metal, FIRST_NM, &eta, &k, err) : ASP_OK;
+    if (s)
+        return s;
+    if (!aspi_bsdf_has(mat->model, "film"))
+        return asp_fail(err, ASP_EINVAL, "film", "this material knows no films");
+    if (!(film_eta >= 1.0 && film_eta <= 10.0))
+        return asp_fail_range(err, "film_eta", film_eta, 1.0, 0, 10.0);
+    if (!(thickness > 0.0 && thickness <= 1e4))
+        return asp_fail_range(err, "film", thickness, 0.0, 1, 1e4);
+    s = aspi_film(mat, metal, film_eta, thickness, err);
+    return !s && mat->model->prepare ? mat->model->prepare(mat, err) : s;
 }
 
 /* ---- F82 <-> n, k */
@@ -209,6 +236,8 @@ asp_status asp_eval_spectrum(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, 
     asp_vec3 m;
     double l2, c, x;
     size_t i;
+    if (mat->fresnel == ASPI_FRESNEL_FILM)
+        return ASP_EINVAL;
     if (mat->model->facets == ASPI_FACETS_REFRACT) {
         other = *mat;
         for (i = 0; i < n; i++) {
@@ -217,7 +246,7 @@ asp_status asp_eval_spectrum(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, 
         }
         return ASP_OK;
     }
-    if (mat->model->facets != ASPI_FACETS_REFLECT || mat->fresnel == ASPI_FRESNEL_FILM)
+    if (mat->model->facets != ASPI_FACETS_REFLECT)
         return ASP_EINVAL;
     m.x = wi.x + wo.x;
     m.y = wi.y + wo.y;

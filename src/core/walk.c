@@ -30,6 +30,7 @@
 #define wall_normal ASP_NAME(wall_normal)
 #define next_normal ASP_NAME(next_normal)
 #define scatter ASP_NAME(scatter)
+#define tint ASP_NAME(walk_tint)
 #define by_reflection ASP_NAME(by_reflection)
 #define by_refraction ASP_NAME(by_refraction)
 #define by_walls ASP_NAME(by_walls)
@@ -78,6 +79,13 @@ ASP_FN asp_v3 next_normal(const aspi_walker *r, asp_v3 v, asp_real seen)
     return visible_normal(&r->mat->ndf, v, u1, u2);
 }
 
+ASP_FN void tint(aspi_walker *r, asp_c3 by)
+{
+    r->carried.r *= by.r;
+    r->carried.g *= by.g;
+    r->carried.b *= by.b;
+}
+
 /* Leaves the facet m; the side and what is carried change. */
 ASP_FN void scatter(aspi_walker *r, asp_v3 m)
 {
@@ -87,14 +95,18 @@ ASP_FN void scatter(aspi_walker *r, asp_v3 m)
     if (r->kind == ASPI_FACETS_DIFFUSE) {
         asp_real u1 = aspi_walk_uniform(r);
         r->d = aspi_around(m, aspi_cosine_lobe(m, u1, aspi_walk_uniform(r)));
-        r->carried.r *= mat->a.r;
-        r->carried.g *= mat->a.g;
-        r->carried.b *= mat->a.b;
+        tint(r, mat->a);
         return;
     }
     if (r->kind == ASPI_FACETS_REFRACT) {
-        asp_real eta = r->inside ? R(1.0) / mat->c.r : mat->c.r;
-        if (aspi_walk_uniform(r) >= aspi_fresnel_dielectric(c, eta)) {
+        asp_real eta = r->inside ? R(1.0) / mat->c.r : mat->c.r, mean;
+        int crosses;
+        aspi_reflected_shares(mat, c, eta, F);
+        mean = aspi_mean_share(mat, F);
+        crosses = aspi_walk_uniform(r) >= mean;
+        if (mat->fresnel == ASPI_FRESNEL_FILM)
+            tint(r, aspi_tinted(mat, F, mean, crosses, R(1.0)));
+        if (crosses) {
             asp_v3 t = aspi_refract(v, m, eta);
             r->d = r->inside ? aspi_negate(t) : t;
             aspi_cross_over(r);
@@ -142,14 +154,13 @@ ASP_FN asp_c3 facet_sends(const aspi_walker *r, asp_v3 v, asp_v3 w, int to_insid
     asp_c3 out;
     if (r->kind == ASPI_FACETS_REFRACT) {
         asp_real eta = r->inside ? R(1.0) / mat->c.r : mat->c.r;
-        if (to_inside != r->inside) {
-            p = by_refraction(&mat->ndf, v, w, r->inside, eta, &c);
-            p *= R(1.0) - aspi_fresnel_dielectric(c, eta);
-        } else {
-            p = by_reflection(&mat->ndf, v, w, r->inside, &c);
-            p *= aspi_fresnel_dielectric(c, eta);
-        }
-        out.r = out.g = out.b = p * by / seen;
+        int crosses = to_inside != r->inside;
+        p = crosses ? by_refraction(&mat->ndf, v, w, r->inside, eta, &c) : by_reflection(&mat->ndf, v, w, r->inside, &c);
+        aspi_reflected_shares(mat, c, eta, F);
+        p = p * by / seen;
+        out.r = (crosses ? R(1.0) - F[0] : F[0]) * p;
+        out.g = (crosses ? R(1.0) - F[1] : F[1]) * p;
+        out.b = (crosses ? R(1.0) - F[2] : F[2]) * p;
         return out;
     }
     p = by_reflection(&mat->ndf, v, w, 0, &c);
@@ -196,7 +207,7 @@ static void by_walls(const aspi_walker *r, asp_v3 v, asp_real seen, const aspi_w
     const asp_mat *mat = r->mat;
     asp_v3 wo = to->w, n = wall_normal(&mat->ndf), toward;
     int out = to->inside;
-    asp_real c, F[3], eta, f;
+    asp_real c, F[3], eta;
     asp_c3 by;
     n = aspi_facing(n, !out);                 /* towards the side of wo */
     c = aspi_dot(wo, n);
@@ -211,15 +222,19 @@ static void by_walls(const aspi_walker *r, asp_v3 v, asp_real seen, const aspi_w
         return;
     }
     eta = out ? R(1.0) / mat->c.r : mat->c.r;
-    f = aspi_fresnel_dielectric(c, eta);
-    by.r = by.g = by.b = f;
+    aspi_reflected_shares(mat, c, eta, F);
+    by.r = F[0];
+    by.g = F[1];
+    by.b = F[2];
     by_wall(r, v, seen, aspi_negate(aspi_reflect(wo, n)), out, by, to, meets, sum);
-    if (f < R(1.0)) {
+    if (aspi_mean_share(mat, F) < R(1.0)) {
         asp_v3 t = aspi_refract(wo, n, eta);
-        asp_real ct = aspi_abs(aspi_dot(t, n));
+        asp_real ct = aspi_abs(aspi_dot(t, n)), rarer = c / (eta * eta * aspi_max(ct, ASP_SMALLEST));
         toward = aspi_negate(t);
         /* solid angles before and after: Snell's law */
-        by.r = by.g = by.b = (R(1.0) - f) * c / (eta * eta * aspi_max(ct, ASP_SMALLEST));
+        by.r = (R(1.0) - F[0]) * rarer;
+        by.g = (R(1.0) - F[1]) * rarer;
+        by.b = (R(1.0) - F[2]) * rarer;
         by_wall(r, v, seen, toward, !out, by, to, meets, sum);
     }
 }
@@ -338,7 +353,7 @@ asp_real ASPI_CALL(asp_walk_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
     aspi_walker r = aspi_start_walk(mat, mat->model->facets, aspi_is_level(&mat->ndf), wi, 0, 0);
     asp_v3 v = aspi_facing(r.d, r.inside);
     int out = wo.z < R(0.0);
-    asp_real seen, once, height = aspi_abs(wo.z), c, eta;
+    asp_real seen, once, height = aspi_abs(wo.z), c, eta, F[3];
     if (!aspi_may_walk(mat, wi, wo))
         return aspi_walk_nothing(wi, wo);
     seen = aspi_area_seen(&r, v);
@@ -349,13 +364,10 @@ asp_real ASPI_CALL(asp_walk_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
         return aspi_walk_mixture(wi.z, seen, once / seen, height * R(1.0 / ASP_PI));
     }
     eta = r.inside ? R(1.0) / mat->c.r : mat->c.r;
-    if (out == r.inside) {
-        once = by_reflection(&mat->ndf, v, wo, r.inside, &c);
-        once *= aspi_fresnel_dielectric(c, eta);
-    } else {
-        once = by_refraction(&mat->ndf, v, wo, r.inside, eta, &c);
-        once *= R(1.0) - aspi_fresnel_dielectric(c, eta);
-    }
+    once = out == r.inside ? by_reflection(&mat->ndf, v, wo, r.inside, &c)
+                           : by_refraction(&mat->ndf, v, wo, r.inside, eta, &c);
+    aspi_reflected_shares(mat, c, eta, F);
+    once *= out == r.inside ? aspi_mean_share(mat, F) : R(1.0) - aspi_mean_share(mat, F);
     return aspi_walk_mixture(wi.z, seen, once / seen, height * R(0.5 / ASP_PI));
 }
 #endif

@@ -327,7 +327,7 @@ static void finite(aspi_trial *t, const asp_shape *k)
                               (double)w[i].x, (double)w[i].y, (double)w[i].z, ends[a], ends[b]);
                 }
         if (t->own ? is.walks : kind == ASPI_MIRROR || kind == ASPI_FILM || kind == ASPI_ROUGH_DIFFUSE
-                                || kind == ASPI_DIELECTRIC)
+                                || kind == ASPI_DIELECTRIC || kind == ASPI_FILM_GLASS)
             for (i = 0; i < DIRECTIONS; i++)
                 finite_walk(t, &mat, w[i], w[(7 * i + 5) % DIRECTIONS]);
     }
@@ -401,7 +401,7 @@ static void nan_law(aspi_trial *t, const asp_shape *k)
                 expect_nan(t, "sample weight", i, s.weight.r);
             }
             if (i < 3 && (t->own ? is.walks : kind == ASPI_MIRROR || kind == ASPI_ROUGH_DIFFUSE
-                                              || kind == ASPI_DIELECTRIC)) {
+                                              || kind == ASPI_DIELECTRIC || kind == ASPI_FILM_GLASS)) {
                 expect_nan(t, "walk weight", i, CALL(walk_sample)(&mat, wi, walk_uniform, t).weight.r);
                 expect_nan(t, "walk eval_cos", i, CALL(walk_eval_cos)(&mat, wi, wo, walk_uniform, t).r);
                 expect_nan(t, "walk_pdf", i, CALL(walk_pdf)(&mat, wi, wo));

@@ -322,7 +322,8 @@ void aspi_law_sample_materials(aspi_trial *t)
         { ASPI_PLASTIC, 0, 0 }, { ASPI_DIELECTRIC, 0, 1 }, { ASPI_DIELECTRIC, 1, 0 },
         { ASPI_COMPENSATED, 0, 0 }, { ASPI_SHEET, 0, 0 }, { ASPI_DIELECTRIC, 1, 1 },
         { ASPI_COMPENSATED_DIELECTRIC, 0, 0 }, { ASPI_COMPENSATED_DIELECTRIC, 0, 1 }, { ASPI_SHEET, 1, 1 },
-        { ASPI_COMPENSATED_DIELECTRIC, 1, 0 }, { ASPI_COMPENSATED_DIELECTRIC, 1, 1 }, { ASPI_FILM, 0, 0 }, { ASPI_DIELECTRIC, 0, 0 }
+        { ASPI_COMPENSATED_DIELECTRIC, 1, 0 }, { ASPI_COMPENSATED_DIELECTRIC, 1, 1 }, { ASPI_FILM, 0, 0 }, { ASPI_DIELECTRIC, 0, 0 },
+        { ASPI_FILM_GLASS, 0, 1 }, { ASPI_FILM_GLASS, 1, 0 }
     };
     enum { CASES = sizeof cases / sizeof *cases };
     asp_roughness five = asp_map_to_roughness(&t->ndf->map);

@@ -14,7 +14,7 @@ static const int masks[MIRRORS] = { ASP_MASK_CORRELATED, ASP_MASK_UNCORRELATED, 
 static const char *const names[ASPI_ALL_MATERIALS] = {
     "mirror correlated", "mirror uncorrelated", "mirror v_cavity", "mirror correlated+wall",
     "mirror uncorrelated+wall", "conductor", "lambert_specular", "plastic", "compensated", "film", "eon",
-    "rough_diffuse", "dielectric", "sheet", "compensated_dielectric"
+    "rough_diffuse", "dielectric", "sheet", "compensated_dielectric", "film on glass"
 };
 
 /* Trials of a material, more where more samples are asked for. */
@@ -49,7 +49,7 @@ static asp_material make(const asp_ndf *ndf, int kind)
     case ASPI_COMPENSATED:
         return prepared(mat, &asp_bsdf_compensated, COMPENSATED_KULLA_CONTY);
     case ASPI_FILM:
-        aspi_film_prepare(&mat, NULL, 1.6, 350);
+        asp_film(&mat, NULL, 1.6, 350, NULL);
         return mat;
     case ASPI_EON:
         mat = asp_rough_diffuse(ndf, diffuse, ASP_MASK_CORRELATED);
@@ -62,6 +62,10 @@ static asp_material make(const asp_ndf *ndf, int kind)
     case ASPI_COMPENSATED_DIELECTRIC:
         mat = asp_dielectric(ndf, 1.5, 0, ASP_RADIANCE, ASP_MASK_CORRELATED);
         return prepared(mat, &asp_bsdf_compensated_dielectric, COMPENSATED_KULLA_CONTY);
+    case ASPI_FILM_GLASS:
+        mat = asp_dielectric(ndf, 1.5, 0, ASP_RADIANCE, ASP_MASK_CORRELATED);
+        asp_film(&mat, NULL, 2.2, 300, NULL);
+        return mat;
     default:
         return mat;
     }
@@ -95,6 +99,7 @@ aspi_traits aspi_traits_of(const asp_material *mat)
     out.mirrors = facets == ASPI_FACETS_REFLECT;
     out.grooves = (mat->mask & 15) == ASP_MASK_V_CAVITY;
     out.mixed = !out.mirrors && facets != ASPI_FACETS_REFRACT;
+    out.coloured = facets == ASPI_FACETS_REFRACT && mat->fresnel == ASPI_FRESNEL_FILM;
     out.quadrature = facets == ASPI_FACETS_DIFFUSE && mat->b.r == ROUGH_EXACT;
     out.reciprocal = !(gives_back && mat->b.r == COMPENSATED_TURQUIN);
     out.walks = asp_can_walk(mat);
@@ -162,7 +167,8 @@ static void furnace_by_samples(aspi_trial *t, asp_vec3 wi, const char *view, siz
     double sum = 0, sum2 = 0, mean, error;
     for (size_t i = 0; i < n; i++) {
         double u1 = aspi_uniform(t), u2 = aspi_uniform(t);
-        double w = aspi_largest(asp_sample_lobe(&mat, wi, u1, u2, aspi_uniform(t)).weight);
+        asp_rgb c = asp_sample_lobe(&mat, wi, u1, u2, aspi_uniform(t)).weight;
+        double w = is.coloured ? (c.r + c.g + c.b) / 3 : aspi_largest(c);
         sum += w;
         sum2 += w * w;
     }

@@ -19,7 +19,7 @@ typedef struct aspi_view {
 enum {
     ASPI_MIRROR = 0, ASPI_MIXTURE = 6, ASPI_MATERIALS = 7,
     ASPI_PLASTIC = 7, ASPI_COMPENSATED, ASPI_FILM, ASPI_EON, ASPI_ROUGH_DIFFUSE, ASPI_ONE_SIDED,
-    ASPI_DIELECTRIC = ASPI_ONE_SIDED, ASPI_SHEET, ASPI_COMPENSATED_DIELECTRIC, ASPI_ALL_MATERIALS,
+    ASPI_DIELECTRIC = ASPI_ONE_SIDED, ASPI_SHEET, ASPI_COMPENSATED_DIELECTRIC, ASPI_FILM_GLASS, ASPI_ALL_MATERIALS,
     ASPI_OWN = ASPI_ALL_MATERIALS       /* the caller's, alone */
 };
 
@@ -30,6 +30,8 @@ typedef struct aspi_traits {
     int mixed;                    /* a cosine lobe is sampled beside the facets */
     int crosses, thin;            /* light goes through; a sheet */
     int quadrature;               /* each f is one */
+    int coloured;                 /* facets reflect with the channels' mean probability: only the mean of a weight's
+                                   * channels is bounded */
     int reciprocal, walks;
     double eta;                   /* of what light crosses; 1 for a sheet */
 } aspi_traits;
