@@ -29,7 +29,8 @@ MODELS = ["conductor:metal=Cu,ndf=(ggx:alpha=0.4)", "lambert_specular:ndf=(ggx:a
           "compensated:metal=Au,ndf=(beckmann:alpha=0.5)", "compensated:form=turquin,ndf=(ggx:alpha=0.5)",
           "compensated_dielectric:eta=1.5,ndf=(ggx:alpha=0.6)",
           "compensated_dielectric:form=turquin,eta=0.7,thin=0,ndf=(beckmann:alpha=0.6)",
-          "conductor:metal=Al,film=300,film_eta=1.5,ndf=(ggx:alpha=0.3)"]
+          "conductor:metal=Al,film=300,film_eta=1.5,ndf=(ggx:alpha=0.3)",
+          "dielectric:eta=1.5,film=400,film_eta=2,ndf=(ggx:alpha=0.3)"]
 
 
 def energy_values():

@@ -141,16 +141,16 @@ ASP_FN int lit(const case_of *k, int thin)
 /* The index of the other side over that of the side of `sign`. */
 ASP_FN asp_real index_of(asp_real sign, asp_real eta, asp_real inverse) { return sign < R(0.0) ? inverse : eta; }
 
-ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo, int thin)
+ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo, int thin, int film)
 {
     asp_real sign = wi.z < R(0.0) ? R(-1.0) : R(1.0), eta = sign < R(0.0) && !thin ? R(1.0) / mat->c.r : mat->c.r;
     case_of k = case_at(aspi_turned(wi, sign, thin), aspi_turned(wo, sign, thin), eta, thin);
     k.dark = !lit(&k, thin) || mat->c.r == R(1.0);
     k.sigma_i = aspi_sigma_of(&mat->ndf, k.wi);
-    aspi_reflected_shares(mat, k.c, eta, k.colours);
+    aspi_reflected_shares(mat, film, k.c, eta, k.colours);
     if (thin)
         sheets(k.colours);
-    k.F = aspi_mean_share(mat, k.colours);
+    k.F = aspi_mean_share(film, k.colours);
     return k;
 }
 
@@ -194,9 +194,9 @@ ASP_FN asp_real crossing_value(const case_of *k, asp_real D, asp_real G2, asp_re
 }
 
 /* f times |cos_o|^cosine. */
-ASP_FN asp_c3 eval_as(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, int thin, int mask)
+ASP_FN asp_c3 eval_as(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, int thin, int film, int mask)
 {
-    case_of k = make_case(mat, *wi, *wo, thin);
+    case_of k = make_case(mat, *wi, *wo, thin, film);
     asp_real f = k.c * R(0.0), D, so, co = aspi_abs(wo->z);
     if (!k.dark) {
         D = aspi_density_of(&mat->ndf, k.m);
@@ -215,14 +215,15 @@ ASP_FN asp_c3 eval_as(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
         }
         f *= k.refracts ? R(1.0) - k.F : k.F;
     }
-    return aspi_tinted(mat, k.colours, k.F, k.refracts, f);
+    return aspi_tinted(film, k.colours, k.F, k.refracts, f);
 }
 
 static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, asp_c3 *out)
 {
     /* constants spare the default the others' arithmetic */
-    int thin = mat->a.r > R(0.0);
-    *out = !thin && mat->mask == 0 ? eval_as(mat, wi, wo, cosine, 0, 0) : eval_as(mat, wi, wo, cosine, thin, mat->mask);
+    int thin = mat->a.r > R(0.0), film = aspi_has_film(mat);
+    *out = thin | film | mat->mask ? eval_as(mat, wi, wo, cosine, thin, film, mat->mask)
+                                   : eval_as(mat, wi, wo, cosine, 0, 0, 0);
 }
 
 /* Density of wo by the facet of a case that is not dark. */
@@ -239,7 +240,7 @@ ASP_FN asp_real facet_density(const case_of *k, asp_real D, int thin)
 static asp_real bsdf_pdf(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo)
 {
     int thin = mat->a.r > R(0.0);
-    case_of k = make_case(mat, *wi, *wo, thin);
+    case_of k = aspi_has_film(mat) ? make_case(mat, *wi, *wo, thin, 1) : make_case(mat, *wi, *wo, thin, 0);
     if (k.dark)
         return k.c * R(0.0);
     return facet_density(&k, aspi_density_of(&mat->ndf, k.m), thin);
@@ -325,8 +326,8 @@ static asp_sampled sample_film(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_r
     k.eta = index_of(sign, mat->c.r, R(1.0) / mat->c.r);
     k.c = aspi_dot(k.wi, k.m);
     k.sigma_i = aspi_sigma_of(shape, k.wi);
-    aspi_reflected_shares(mat, k.c, k.eta, k.colours);
-    k.F = aspi_mean_share(mat, k.colours);
+    aspi_film_shares(mat, k.c, k.eta, k.colours);
+    k.F = aspi_mean_share(1, k.colours);
     k.refracts = u3 >= k.F;
     k.wo = lengthened(k.refracts ? aspi_refract(k.wi, k.m, k.eta) : aspi_reflect(k.wi, k.m), R(1.0));
     k.wm = aspi_dot(k.wo, k.m);
@@ -343,7 +344,7 @@ static asp_sampled sample_film(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_r
     }
     out.pdf = up <= R(0.0) ? R(0.0) : facet_density(&k, aspi_density_of(shape, k.m), 0);
     out.wo = aspi_turned(k.wo, sign, 0);
-    out.weight = aspi_tinted(mat, k.colours, k.F, k.refracts, up <= R(0.0) ? R(0.0) : weight);
+    out.weight = aspi_tinted(1, k.colours, k.F, k.refracts, up <= R(0.0) ? R(0.0) : weight);
     return out;
 }
 
@@ -356,21 +357,21 @@ static asp_sampled sample_thin(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_r
     asp_v3 v = aspi_turned(wi, sign, 1), wo;
     asp_mirrored s;
     asp_sampled out;
-    int passes;
+    int passes, film = aspi_has_film(mat);
     if (v.z <= R(0.0) || nothing != R(0.0))
         return nothing_of(wi, nothing);
     ASPI_OPS(shape).reflect(shape, v.x, v.y, v.z, u1, u2, &s);
     c = aspi_sqrt(aspi_unit_cosine(s.cosine2));
-    aspi_reflected_shares(mat, c, mat->c.r, colours);
+    aspi_reflected_shares(mat, film, c, mat->c.r, colours);
     sheets(colours);
-    F = aspi_mean_share(mat, colours);
+    F = aspi_mean_share(film, colours);
     passes = u3 >= F;
     wo = aspi_vector(s.wo_x, s.wo_y, s.wo_z);
     weight = staying_weight(shape, v, wo, s.sigma_i, s.sigma_o, aspi_sqrt(aspi_above(s.m_z2)), c, mat->mask);
     out.pdf = wo.z <= R(0.0) ? R(0.0) : (passes ? R(1.0) - F : F) * s.pdf;
     weight = wo.z <= R(0.0) ? R(0.0) : weight;
     out.wo = aspi_turned(lengthened(wo, R(1.0)), passes ? -sign : sign, 1);
-    out.weight = aspi_tinted(mat, colours, F, passes, weight);
+    out.weight = aspi_tinted(film, colours, F, passes, weight);
     return out;
 }
 
@@ -381,7 +382,7 @@ ASP_CLONES_SINGLE static asp_sampled bsdf_sample(const asp_mat *mat, asp_v3 wi, 
     /* constants spare the default the others' arithmetic */
     if (mat->a.r > R(0.0) && mat->c.r != R(1.0))
         return sample_thin(mat, wi, u1, u2, u3);
-    if (mat->fresnel == ASPI_FRESNEL_FILM)
+    if (aspi_has_film(mat))
         return sample_film(mat, wi, u1, u2, u3);
     if (mat->c.r != R(1.0))
         return mat->mask == 0 ? sample_as(mat, wi, u1, u2, u3, 0) : sample_as(mat, wi, u1, u2, u3, mat->mask);
@@ -395,7 +396,7 @@ ASP_CLONES_SINGLE static asp_sampled bsdf_sample(const asp_mat *mat, asp_v3 wi, 
 /* Bare half spaces with the default masking, which blocks are for. */
 ASP_FN int plain(const asp_mat *mat)
 {
-    return !(mat->a.r > R(0.0)) && mat->c.r != R(1.0) && mat->mask == 0 && mat->fresnel != ASPI_FRESNEL_FILM;
+    return !(mat->a.r > R(0.0)) && mat->c.r != R(1.0) && mat->mask == 0 && !aspi_has_film(mat);
 }
 
 /* A block of pairs: wi and wo turned up, the facets that join them, D and sigma. */

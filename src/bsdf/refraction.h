@@ -16,6 +16,7 @@
 #define aspi_crossing_scale ASP_NAME(aspi_crossing_scale)
 #define aspi_crossing_scales ASP_NAME(aspi_crossing_scales)
 #define aspi_film_shares ASP_NAME(aspi_film_shares)
+#define aspi_has_film ASP_NAME(aspi_has_film)
 #define aspi_mean_share ASP_NAME(aspi_mean_share)
 #define aspi_reflected_shares ASP_NAME(aspi_reflected_shares)
 #define aspi_tinted ASP_NAME(aspi_tinted)
@@ -45,30 +46,32 @@ ASP_FN int aspi_crossing_scales(int transport, asp_real thin) { return transport
 /* What crosses into the index eta is scaled so, where `scales` says that it is; from 1/eta. */
 ASP_FN asp_real aspi_crossing_scale(asp_real inverse, int scales) { return scales ? inverse * inverse : R(1.0); }
 
+ASP_FN int aspi_has_film(const asp_mat *mat) { return mat->fresnel == ASPI_FRESNEL_FILM; }
+
 /* What a facet of a dielectric under a film reflects of each channel; in dielectric.c. */
 void aspi_film_shares(const asp_mat *mat, asp_real c, asp_real eta, asp_real F[3]);
 
 /* What a dielectric's facet reflects of each channel. */
-ASP_FN void aspi_reflected_shares(const asp_mat *mat, asp_real c, asp_real eta, asp_real F[3])
+ASP_FN void aspi_reflected_shares(const asp_mat *mat, int film, asp_real c, asp_real eta, asp_real F[3])
 {
-    if (mat->fresnel == ASPI_FRESNEL_FILM)
+    if (film)
         aspi_film_shares(mat, c, eta, F);
     else
         F[0] = F[1] = F[2] = aspi_fresnel_dielectric(c, eta);
 }
 
 /* With what probability light is reflected: without a film the share of each channel. */
-ASP_FN asp_real aspi_mean_share(const asp_mat *mat, const asp_real F[3])
+ASP_FN asp_real aspi_mean_share(int film, const asp_real F[3])
 {
-    return mat->fresnel == ASPI_FRESNEL_FILM ? (F[0] + F[1] + F[2]) * R(1.0 / 3.0) : F[0];
+    return film ? (F[0] + F[1] + F[2]) * R(1.0 / 3.0) : F[0];
 }
 
 /* `by` what was chosen with the mean share's probability is worth in each channel: where it crosses, of the rest. */
-ASP_FN asp_c3 aspi_tinted(const asp_mat *mat, const asp_real F[3], asp_real mean, int crosses, asp_real by)
+ASP_FN asp_c3 aspi_tinted(int film, const asp_real F[3], asp_real mean, int crosses, asp_real by)
 {
     asp_c3 out;
     out.r = out.g = out.b = by;
-    if (mat->fresnel == ASPI_FRESNEL_FILM) {
+    if (film) {
         asp_real over = by / aspi_max(crosses ? R(1.0) - mean : mean, ASP_SMALLEST);
         out.r = (crosses ? R(1.0) - F[0] : F[0]) * over;
         out.g = (crosses ? R(1.0) - F[1] : F[1]) * over;

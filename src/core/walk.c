@@ -101,11 +101,11 @@ ASP_FN void scatter(aspi_walker *r, asp_v3 m)
     if (r->kind == ASPI_FACETS_REFRACT) {
         asp_real eta = r->inside ? R(1.0) / mat->c.r : mat->c.r, mean;
         int crosses;
-        aspi_reflected_shares(mat, c, eta, F);
-        mean = aspi_mean_share(mat, F);
+        aspi_reflected_shares(mat, aspi_has_film(mat), c, eta, F);
+        mean = aspi_mean_share(aspi_has_film(mat), F);
         crosses = aspi_walk_uniform(r) >= mean;
-        if (mat->fresnel == ASPI_FRESNEL_FILM)
-            tint(r, aspi_tinted(mat, F, mean, crosses, R(1.0)));
+        if (aspi_has_film(mat))
+            tint(r, aspi_tinted(1, F, mean, crosses, R(1.0)));
         if (crosses) {
             asp_v3 t = aspi_refract(v, m, eta);
             r->d = r->inside ? aspi_negate(t) : t;
@@ -156,7 +156,7 @@ ASP_FN asp_c3 facet_sends(const aspi_walker *r, asp_v3 v, asp_v3 w, int to_insid
         asp_real eta = r->inside ? R(1.0) / mat->c.r : mat->c.r;
         int crosses = to_inside != r->inside;
         p = crosses ? by_refraction(&mat->ndf, v, w, r->inside, eta, &c) : by_reflection(&mat->ndf, v, w, r->inside, &c);
-        aspi_reflected_shares(mat, c, eta, F);
+        aspi_reflected_shares(mat, aspi_has_film(mat), c, eta, F);
         p = p * by / seen;
         out.r = (crosses ? R(1.0) - F[0] : F[0]) * p;
         out.g = (crosses ? R(1.0) - F[1] : F[1]) * p;
@@ -222,12 +222,12 @@ static void by_walls(const aspi_walker *r, asp_v3 v, asp_real seen, const aspi_w
         return;
     }
     eta = out ? R(1.0) / mat->c.r : mat->c.r;
-    aspi_reflected_shares(mat, c, eta, F);
+    aspi_reflected_shares(mat, aspi_has_film(mat), c, eta, F);
     by.r = F[0];
     by.g = F[1];
     by.b = F[2];
     by_wall(r, v, seen, aspi_negate(aspi_reflect(wo, n)), out, by, to, meets, sum);
-    if (aspi_mean_share(mat, F) < R(1.0)) {
+    if (aspi_mean_share(aspi_has_film(mat), F) < R(1.0)) {
         asp_v3 t = aspi_refract(wo, n, eta);
         asp_real ct = aspi_abs(aspi_dot(t, n)), rarer = c / (eta * eta * aspi_max(ct, ASP_SMALLEST));
         toward = aspi_negate(t);
@@ -366,8 +366,8 @@ asp_real ASPI_CALL(asp_walk_pdf)(const asp_mat *mat, asp_v3 wi, asp_v3 wo)
     eta = r.inside ? R(1.0) / mat->c.r : mat->c.r;
     once = out == r.inside ? by_reflection(&mat->ndf, v, wo, r.inside, &c)
                            : by_refraction(&mat->ndf, v, wo, r.inside, eta, &c);
-    aspi_reflected_shares(mat, c, eta, F);
-    once *= out == r.inside ? aspi_mean_share(mat, F) : R(1.0) - aspi_mean_share(mat, F);
+    aspi_reflected_shares(mat, aspi_has_film(mat), c, eta, F);
+    once *= out == r.inside ? aspi_mean_share(aspi_has_film(mat), F) : R(1.0) - aspi_mean_share(aspi_has_film(mat), F);
     return aspi_walk_mixture(wi.z, seen, once / seen, height * R(0.5 / ASP_PI));
 }
 #endif

@@ -234,6 +234,8 @@ static int models(int verbose, hashes wide, hashes narrow)
         "compensated_dielectric:eta=1.6,ndf=(student_t:alpha=0.5,gamma=2.7)",
         "compensated_dielectric:eta=0.7,form=turquin,mask=wall,ndf=(ggx:alpha_x=0.6,alpha_y=0.3,mean_x=0.2)",
         "compensated_dielectric:eta=1.4,thin=1,ndf=(beckmann:alpha=0.6)",
+        "dielectric:eta=0.7,film=240,film_eta=1.7,transport=importance,ndf=(ggx:alpha_x=0.4,alpha_y=0.2,mean_y=0.2)",
+        "dielectric:eta=1.5,thin=1,film=600,mask=uncorrelated,ndf=(beckmann:alpha=0.4)",
         "conductor:metal=Ti,film=320,film_eta=2.1,ndf=(ggx:alpha_x=0.3,alpha_y=0.1,rotation=0.4)",
         "conductor:f0=0.9/0.6/0.3,tint=0.8,ndf=(student_t:alpha=0.5,gamma=2.2,mean_y=-0.4)"
     };

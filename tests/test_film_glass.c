@@ -1,0 +1,203 @@
+/* test_film_glass.c - thin films on dielectrics: reflectances by characteristic matrices from either side
+ *
+ * The matrices are those of Born, Wolf, sec. 1.6; nothing of the library's own film is used. */
+#include "scatter_test.h"
+
+#include <complex.h>
+#include <string.h>
+
+#define NODES 30      /* cells of the library's table over the cosine on the less dense side */
+
+/* A stack seen from the index n0 at the cosine c: a film n1 of thickness d on n2. */
+typedef struct stack { double n0, n1, d, n2, c; } stack;
+
+static double by_matrices(const void *context, double nm)
+{
+    const stack *f = (const stack *)context;
+    double complex s = f->n0 * sqrt(1 - f->c * f->c), c1 = csqrt(1 - s * s / (f->n1 * f->n1));
+    double complex c2 = csqrt(1 - s * s / (f->n2 * f->n2)), phase = 2 * PI * f->n1 * f->d * c1 / nm;
+    double total = 0;
+    for (int p = 0; p < 2; p++) {
+        double complex q0 = p ? f->c / f->n0 : f->n0 * f->c, q1 = p ? c1 / f->n1 : f->n1 * c1, q2 = p ? c2 / f->n2 : f->n2 * c2;
+        double complex b = ccos(phase) - I * csin(phase) / q1 * q2, c = ccos(phase) * q2 - I * csin(phase) * q1;
+        double r = cabs((q0 * b - c) / (q0 * b + c));
+        total += 0.5 * r * r;
+    }
+    return total;
+}
+
+static double channel(asp_rgb c, int i) { return i == 0 ? c.r : i == 1 ? c.g : c.b; }
+
+static double share(stack f, int ch) { return fmin(fmax(channel(asp_rgb_of_reflectance(by_matrices, &f), ch), 0), 1); }
+
+static asp_vec3 flip(asp_vec3 w) { return (asp_vec3){ -w.x, -w.y, -w.z }; }
+
+typedef struct glass { double eta, film_eta, film; } glass;
+static const glass glasses[] = { { 1.5, 2.2, 300 }, { 1.5, 1.33, 500 }, { 2.4, 1.4, 120 }, { 0.7, 1.8, 260 }, { 0.45, 1.2, 90 } };
+enum { GLASSES = sizeof glasses / sizeof *glasses };
+
+static asp_material film_on(glass g, const char *more)
+{
+    char spec[200];
+    snprintf(spec, sizeof spec, "dielectric:eta=%g,film=%g,film_eta=%g%s,ndf=(ggx:alpha=0.3)", g.eta, g.film, g.film_eta, more);
+    return material(spec);
+}
+
+static asp_material bare(glass g)
+{
+    asp_ndf surface = ndf("ggx:alpha=0.3");
+    return asp_dielectric(&surface, g.eta, 0, ASP_RADIANCE, 0);
+}
+
+/* Bare Fresnel reflectance from n0 to n2, which divides out of the bare material. */
+static double plain(double n0, double n2, double c)
+{
+    stack f = { n0, n2, 100, n2, c };
+    return by_matrices(&f, 550);
+}
+
+/* What the film changes of reflection and refraction by the level facet, from both sides: shares of its table's cosines
+ * to rounding, of others to what the table is stated to be off by. */
+static void check_shares(void)
+{
+    double at = 0, off = 0, total = 0, spread = 0;
+    for (int g = 0; g < GLASSES; g++) {
+        asp_material film = film_on(glasses[g], ""), none = bare(glasses[g]);
+        double eta = glasses[g].eta, less = fmin(eta, 1), more = fmax(eta, 1);
+        for (int i = 1; i < 4 * NODES; i++) {
+            double rare = i / (4.0 * NODES);                    /* cosines on the less dense side and on the other */
+            double dense = sqrt(1 - (1 - rare * rare) * (less * less) / (more * more));
+            double c_o = eta > 1 ? rare : dense, c_i = eta > 1 ? dense : rare;
+            asp_vec3 out = direction(acos(c_o), 0.3), in = flip(direction(acos(c_i), 0.3));
+            stack above = { 1, glasses[g].film_eta, glasses[g].film, eta, c_o };
+            stack below = { eta, glasses[g].film_eta, glasses[g].film, 1, c_i };
+            asp_vec3 away = direction(acos(c_o), 0.3 + PI), deep = flip(direction(acos(c_i), 0.3 + PI));
+            asp_rgb f[4] = { asp_eval(&film, out, away), asp_eval(&film, in, deep), asp_eval(&film, out, flip(direction(acos(c_i), 0.3))),
+                             asp_eval(&film, in, direction(acos(c_o), 0.3)) };
+            double F_o = plain(1, eta, c_o), F_i = plain(eta, 1, c_i);
+            double without[4] = { asp_eval(&none, out, away).r / F_o, asp_eval(&none, in, deep).r / F_i,
+                                  asp_eval(&none, out, flip(direction(acos(c_i), 0.3))).r / (1 - F_o),
+                                  asp_eval(&none, in, direction(acos(c_o), 0.3)).r / (1 - F_i) };
+            for (int ch = 0; ch < 3; ch++) {
+                double R_o = share(above, ch), R_i = share(below, ch), expected[4] = { R_o, R_i, 1 - R_o, 1 - R_i };
+                for (int k = 0; k < 4; k++) {
+                    double apart = fabs(channel(f[k], ch) / without[k] - expected[k]);
+                    if (i % 4 == 0)
+                        at = fmax(at, apart);
+                    else
+                        off = fmax(off, apart);
+                }
+                spread = fmax(spread, fabs(expected[0] - share(above, 0)));
+            }
+        }
+        /* beyond the critical angle on the denser side */
+        for (int i = 1; i < 20; i++) {
+            double c = sqrt(1 - less * less / (more * more)) * i / 20;
+            asp_vec3 w = direction(acos(c), 0.3), v = direction(acos(c), 0.3 + PI);
+            asp_rgb a = eta > 1 ? asp_eval(&film, flip(w), flip(v)) : asp_eval(&film, w, v);
+            asp_rgb b = eta > 1 ? asp_eval(&none, flip(w), flip(v)) : asp_eval(&none, w, v);
+            for (int ch = 0; ch < 3; ch++)
+                total = fmax(total, fabs(channel(a, ch) / channel(b, ch) - 1));
+        }
+    }
+    expect(spread > 0.1, "films have colours, channels apart by", spread);
+    expect(at < 1e-9, "shares by characteristic matrices, reflected and refracted, from both sides", at);
+    expect(off < 2e-3, "between the table's cosines", off);
+    expect(total < 1e-12, "total reflection is total", total);
+}
+
+/* A sheet has the film on both faces: R = 2F/(1 + F), and the rest passes as if mirrored. */
+static void check_sheet(void)
+{
+    double worst = 0;
+    for (int g = 0; g < 3; g++) {
+        asp_material film = film_on(glasses[g], ",thin=1");
+        asp_ndf surface = ndf("ggx:alpha=0.3");
+        asp_material mirror = asp_mirror(&surface, 0);
+        for (int i = 1; i <= NODES; i++) {
+            double c = (double)i / NODES;
+            stack f = { 1, glasses[g].film_eta, glasses[g].film, glasses[g].eta, c };
+            asp_vec3 w = direction(acos(c), 0.3), v = direction(acos(c), 0.3 + PI), through = { v.x, v.y, -v.z };
+            asp_rgb a = asp_eval(&film, w, v), b = asp_eval(&film, w, through);
+            double x = asp_eval(&mirror, w, v).r;
+            for (int ch = 0; ch < 3; ch++) {
+                double F = share(f, ch), R = 2 * F / (1 + F);
+                worst = fmax(worst, fmax(fabs(channel(a, ch) / x - R), fabs(channel(b, ch) / x - (1 - R))));
+            }
+        }
+    }
+    expect(worst < 1e-9, "sheets with films", worst);
+}
+
+/* Channels of walks and of samples carry all light in the mean, of importance, each alone. */
+static void check_carried(void)
+{
+    enum { WALKS = 40000 };
+    uint64_t state = 7;
+    double worst = 0, once = 0;
+    for (int g = 0; g < GLASSES; g++)
+        for (int side = 0; side < 2; side++) {
+            asp_material film = film_on(glasses[g], ",transport=importance");
+            asp_vec3 wi = direction(0.9, 0.2);
+            double sum[3] = { 0 }, square[3] = { 0 };
+            wi = side ? flip(wi) : wi;
+            for (int i = 0; i < WALKS; i++) {
+                double u1 = next(&state), u2 = next(&state);
+                asp_rgb w = asp_walk_sample(&film, wi, next, &state).weight;
+                asp_rgb s = asp_sample_lobe(&film, wi, u1, u2, next(&state)).weight;
+                once = fmax(once, (s.r + s.g + s.b) / 3 - 1);
+                for (int ch = 0; ch < 3; ch++) {
+                    sum[ch] += channel(w, ch) / WALKS;
+                    square[ch] += channel(w, ch) * channel(w, ch) / WALKS;
+                }
+            }
+            for (int ch = 0; ch < 3; ch++)
+                worst = fmax(worst, fabs(sum[ch] - 1) / sqrt((square[ch] - sum[ch] * sum[ch]) / WALKS));
+        }
+    expect(worst < 4, "each channel of walks carries all light, in standard errors", worst);
+    expect(once < 1e-12, "the mean weight of samples is never above 1", once);
+}
+
+/* What asp_film makes is what a spec makes, and what it refuses it leaves as it was. */
+static void check_asked(void)
+{
+    asp_material mat = bare(glasses[0]), spec = film_on(glasses[0], ""), before;
+    asp_metal stranger = { "stranger", "", { 1, 1, 1 }, { 1, 1, 1 }, { 1, 1, 1 } };
+    asp_material plastic = material("plastic:ndf=(ggx)"), kin = material("compensated_dielectric:ndf=(ggx)");
+    asp_material f0 = material("conductor:f0=0.5,ndf=(ggx)"), gold = material("conductor:metal=Au,ndf=(ggx:alpha=0.2)");
+    asp_material golden = material("conductor:metal=Au,film=200,film_eta=1.5,ndf=(ggx:alpha=0.2)");
+    asp_material given = material("compensated:metal=Au,ndf=(ggx:alpha=0.2)");
+    asp_material coated = material("compensated:metal=Au,film=200,film_eta=1.5,ndf=(ggx:alpha=0.2)");
+    asp_error err;
+    int wrong = 0;
+    wrong += asp_film(&mat, NULL, glasses[0].film_eta, glasses[0].film, &err) != ASP_OK;
+    wrong += memcmp(mat.energy, spec.energy, sizeof mat.energy) != 0 || mat.fresnel != spec.fresnel;
+    wrong += asp_film(&gold, asp_find_metal("Au"), 1.5, 200, &err) != ASP_OK;
+    wrong += memcmp(gold.energy, golden.energy, sizeof gold.energy) != 0 || gold.fresnel != golden.fresnel;
+    wrong += asp_film(&given, asp_find_metal("Au"), 1.5, 200, &err) != ASP_OK;
+    wrong += memcmp(given.energy, coated.energy, sizeof given.energy) != 0 || given.fresnel != coated.fresnel;
+    expect(wrong == 0, "asp_film and the key film agree, but for", wrong);
+    wrong = 0;
+    before = mat;
+    wrong += asp_film(&mat, NULL, 0.9, 100, &err) != ASP_EINVAL || strcmp(err.name, "film_eta") || err.low != 1 || err.high != 10;
+    wrong += asp_film(&mat, NULL, 1.5, NAN, &err) != ASP_EINVAL || strcmp(err.name, "film") || !err.low_open || err.high != 1e4;
+    wrong += asp_film(&mat, &stranger, 1.5, 100, &err) != ASP_EINVAL || strcmp(err.name, "metal");
+    wrong += memcmp(&mat, &before, sizeof mat) != 0;
+    wrong += asp_film(&plastic, NULL, 1.5, 100, &err) != ASP_EINVAL || asp_film(&kin, NULL, 1.5, 100, &err) != ASP_EINVAL;
+    wrong += asp_film(&f0, NULL, 1.5, 100, &err) != ASP_EINVAL;
+    mat = asp_dielectric(&mat.ndf, 1, 0, ASP_RADIANCE, 0);
+    wrong += asp_film(&mat, NULL, 1.5, 100, &err) != ASP_EINVAL;
+    wrong += asp_material_parse(NULL, "dielectric:eta=1,film=100,ndf=(ggx)", &mat, &err) != ASP_EINVAL || err.position != 22;
+    wrong += asp_material_parse(NULL, "dielectric:film_eta=1.4,ndf=(ggx)", &mat, &err) != ASP_EINVAL;
+    wrong += asp_material_parse(NULL, "compensated_dielectric:film=100,ndf=(ggx)", &mat, &err) != ASP_EUNKNOWN;
+    expect(wrong == 0, "films that cannot be are refused, but for", wrong);
+}
+
+int main(void)
+{
+    check_shares();
+    check_sheet();
+    check_carried();
+    check_asked();
+    return finish();
+}
