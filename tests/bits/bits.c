@@ -221,16 +221,14 @@ static int study(hashes wide, hashes narrow)
 static int models(int verbose, hashes wide, hashes narrow)
 {
     static const char *const specs_of[] = {
-        "dielectric:eta=1.5,ndf=(ggx:alpha=0.3)",
+        "dielectric:eta=1.5,ndf=(ggx:alpha=0.3)", "rough_diffuse:albedo=0.8/0.5/0.2,ndf=(ggx:alpha=0.5)",
         "dielectric:eta=0.6,transport=importance,mask=uncorrelated,ndf=(beckmann:alpha_x=0.5,alpha_y=0.2,mean_x=0.3)",
         "dielectric:eta=1.8,thin=1,mask=v_cavity,ndf=(student_t:alpha=0.4,gamma=2.7)",
-        "rough_diffuse:albedo=0.8/0.5/0.2,ndf=(ggx:alpha=0.5)",
         "rough_diffuse:form=oren_nayar,ndf=(beckmann:alpha=0.5)", "rough_diffuse:form=fujii,ndf=(ggx:alpha=0.6)",
         "rough_diffuse:form=eon,albedo=0.9/0.5/0.1,ndf=(ggx:alpha_x=0.6,alpha_y=0.2)",
         "plastic:albedo=0.7/0.4/0.2,eta=1.6,ndf=(ggx:alpha=0.2)",
         "plastic:albedo=1,mask=wall,ndf=(student_t:alpha_x=0.2,alpha_y=0.5,gamma=3.1,mean_x=0.3)",
-        "compensated:metal=Au,ndf=(beckmann:alpha_x=0.7,alpha_y=0.4)",
-        "compensated:metal=Cu,form=turquin,ndf=(ggx:alpha=0.6)",
+        "compensated:metal=Au,ndf=(beckmann:alpha_x=0.7,alpha_y=0.4)", "compensated:metal=Cu,form=turquin,ndf=(ggx:alpha=0.6)",
         "compensated_dielectric:eta=1.6,ndf=(student_t:alpha=0.5,gamma=2.7)",
         "compensated_dielectric:eta=0.7,form=turquin,mask=wall,ndf=(ggx:alpha_x=0.6,alpha_y=0.3,mean_x=0.2)",
         "compensated_dielectric:eta=1.4,thin=1,ndf=(beckmann:alpha=0.6)",
