@@ -283,62 +283,64 @@ ASP_CLONES static void ndf_normal_n(const asp_shape *k, size_t n, const asp_real
 }
 #endif
 
-/* Facets in the world (bx, by, z), the squares of their lengths as inverses q where they are not 1, and what
- * ndf_lobe makes of them. */
+/* Facets of the standard surface (x, y, z) and in the world (bx, by, z), the inverses of the squares of their
+ * lengths there; or unit normals of the world and their density. */
+typedef struct ndf_facets {
+    asp_real bx[ASP_BLOCK], by[ASP_BLOCK], z[ASP_BLOCK];
+#ifdef ASP_OWN_VISIBLE_N
+    asp_real D[ASP_BLOCK];
+#else
+    asp_real x[ASP_BLOCK], y[ASP_BLOCK], q[ASP_BLOCK];
+#endif
+} ndf_facets;
+
 ASP_FN void ndf_draw_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT wx, const asp_real *ASP_RESTRICT wy,
                        const asp_real *ASP_RESTRICT wz, const asp_real *ASP_RESTRICT u1,
-                       const asp_real *ASP_RESTRICT u2, asp_real *ASP_RESTRICT bx, asp_real *ASP_RESTRICT by,
-                       asp_real *ASP_RESTRICT z, asp_real *ASP_RESTRICT q, asp_real *ASP_RESTRICT si,
-                       asp_real *ASP_RESTRICT p)
+                       const asp_real *ASP_RESTRICT u2, ndf_facets *ASP_RESTRICT f, asp_real *ASP_RESTRICT si)
 {
-    size_t i;
 #ifndef ASP_OWN_VISIBLE_N
-    asp_real x[ASP_BLOCK], y[ASP_BLOCK];
     asp_bits below = 0;
+    size_t i;
     for (i = 0; i < n; i++) {
         asp_v3 v = aspi_view(k, aspi_vector(wx[i], wy[i], wz[i]));
         aspi_aimed a = ndf_aim_up(k, v);
         si[i] = ndf_sigma_up_at(k, v);
         NDF_NOTE(below, aspi_to_bits(v.z));
-        x[i] = a.x;
-        y[i] = a.y;
-        z[i] = a.z;
-        q[i] = a.w;
+        f->x[i] = a.x;
+        f->y[i] = a.y;
+        f->z[i] = a.z;
+        f->q[i] = a.w;
     }
     if (NDF_ANY_BELOW(below))
-        ndf_aim_below(k, n, wx, wy, wz, si, z);
+        ndf_aim_below(k, n, wx, wy, wz, si, f->z);
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
         aspi_aimed a;
         asp_v3 m;
-        a.x = x[i];
-        a.y = y[i];
-        a.z = z[i];
-        a.w = q[i];
+        a.x = f->x[i];
+        a.y = f->y[i];
+        a.z = f->z[i];
+        a.w = f->q[i];
         m = ndf_aimed(k, a, u1[i], u2[i]);
-        x[i] = m.x;
-        y[i] = m.y;
-        z[i] = m.z;
+        f->x[i] = m.x;
+        f->y[i] = m.y;
+        f->z[i] = m.z;
     }
     for (i = 0; i < n; i++) {
-        asp_v3 back = aspi_facet_back(k, aspi_vector(x[i], y[i], z[i]));
-        bx[i] = back.x;
-        by[i] = back.y;
-        q[i] = R(1.0) / aspi_max(aspi_dot(back, back), ASP_TINY);
+        asp_v3 back = aspi_facet_back(k, aspi_vector(f->x[i], f->y[i], f->z[i]));
+        f->bx[i] = back.x;
+        f->by[i] = back.y;
+        f->q[i] = R(1.0) / aspi_max(aspi_dot(back, back), ASP_TINY);
     }
-#define NDF_Q(i) q[i]
-#define NDF_LOBE(i) ndf_lobe(k, wz[i], aspi_vector(x[i], y[i], z[i]), q[i], si[i])
+#define NDF_Q(f, i) (f).q[i]
+#define NDF_LOBE(k, f, i, ci, si) ndf_lobe(k, ci, aspi_vector((f).x[i], (f).y[i], (f).z[i]), (f).q[i], si)
 #else
-    (void)q;
-    ndf_visible_n(k, n, wx, wy, wz, u1, u2, bx, by, z);
+    ndf_visible_n(k, n, wx, wy, wz, u1, u2, f->bx, f->by, f->z);
     ndf_sigma_n(k, n, R(1.0), wx, wy, wz, si);
-    ndf_density_n(k, n, bx, by, z, p);
-#define NDF_Q(i) R(1.0)
-#define NDF_LOBE(i) aspi_lobe_density(wz[i], p[i], si[i])
+    ndf_density_n(k, n, f->bx, f->by, f->z, f->D);
+#define NDF_Q(f, i) R(1.0)
+#define NDF_LOBE(k, f, i, ci, si) aspi_lobe_density(ci, (f).D[i], si)
 #endif
-    ASP_IN_PLACE
-    for (i = 0; i < n; i++)
-        p[i] = NDF_LOBE(i);
 }
 
 /* The sign bits tell whether any direction that matters lies below the mean plane: a wo that points down
@@ -350,16 +352,17 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
                                      const asp_real *ASP_RESTRICT u2, const asp_mirrored_s *out)
 {
     asp_real *ASP_RESTRICT ox = out->wo_x, *ASP_RESTRICT oy = out->wo_y, *ASP_RESTRICT oz = out->wo_z;
-    asp_real *ASP_RESTRICT mz2 = out->m_z2, *ASP_RESTRICT c2 = out->cosine2;
-    asp_real *ASP_RESTRICT so = out->sigma_o;
-    asp_real bx[ASP_BLOCK], by[ASP_BLOCK], z[ASP_BLOCK], q[ASP_BLOCK];
+    asp_real *ASP_RESTRICT mz2 = out->m_z2, *ASP_RESTRICT c2 = out->cosine2, *ASP_RESTRICT p = out->pdf;
+    asp_real *ASP_RESTRICT si = out->sigma_i, *ASP_RESTRICT so = out->sigma_o;
+    ndf_facets f;
     asp_bits below = 0;
     size_t i;
-    ndf_draw_n(k, n, wx, wy, wz, u1, u2, bx, by, z, q, out->sigma_i, out->pdf);
+    ndf_draw_n(k, n, wx, wy, wz, u1, u2, &f, si);
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
-        asp_v3 wo = ndf_mirror(aspi_vector(wx[i], wy[i], wz[i]), aspi_vector(bx[i], by[i], z[i]), NDF_Q(i),
+        asp_v3 wo = ndf_mirror(aspi_vector(wx[i], wy[i], wz[i]), aspi_at(f.bx, f.by, f.z, i), NDF_Q(f, i),
                                &mz2[i], &c2[i]), v;
+        p[i] = NDF_LOBE(k, f, i, wz[i], si[i]);
         ox[i] = wo.x;
         oy[i] = wo.y;
         oz[i] = wo.z;
@@ -385,27 +388,27 @@ ASP_CLONES static void ndf_refract_n(const asp_shape *k, size_t n, const asp_rea
                                      const asp_real *ASP_RESTRICT inverse, const asp_split_rays *out)
 {
     asp_real *ASP_RESTRICT ox = out->wo_x, *ASP_RESTRICT oy = out->wo_y, *ASP_RESTRICT oz = out->wo_z;
-    asp_real *ASP_RESTRICT F = out->F, *ASP_RESTRICT p = out->pdf;
-    asp_real bx[ASP_BLOCK], by[ASP_BLOCK], z[ASP_BLOCK], q[ASP_BLOCK];
+    asp_real *ASP_RESTRICT F = out->F, *ASP_RESTRICT p = out->pdf, *ASP_RESTRICT si = out->sigma_i;
+    ndf_facets f;
     size_t i;
-    ndf_draw_n(k, n, wx, wy, wz, u1, u2, bx, by, z, q, out->sigma_i, p);
+    ndf_draw_n(k, n, wx, wy, wz, u1, u2, &f, si);
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
-        asp_v3 wi = aspi_vector(wx[i], wy[i], wz[i]), m = aspi_vector(bx[i], by[i], z[i]), wo;
+        asp_v3 wi = aspi_vector(wx[i], wy[i], wz[i]), m = aspi_at(f.bx, f.by, f.z, i), wo;
         aspi_split s = aspi_split_at(wi, m, NDF_LENGTH2(m), eta[i]);
         int crosses = u3[i] >= s.F;
         asp_real sign = crosses ? R(-1.0) : R(1.0);
         F[i] = s.F;
-        p[i] = aspi_split_density(&s, p[i], NDF_Q(i), eta[i], crosses);
-        wo = aspi_split_way(&s, wi, m, NDF_Q(i), inverse[i], crosses);
+        p[i] = aspi_split_density(&s, NDF_LOBE(k, f, i, wz[i], si[i]), NDF_Q(f, i), eta[i], crosses);
+        wo = aspi_split_way(&s, wi, m, NDF_Q(f, i), inverse[i], crosses);
         ox[i] = wo.x;
         oy[i] = wo.y;
         oz[i] = wo.z;
-        bx[i] = sign * wo.x;
-        by[i] = sign * wo.y;
-        z[i] = sign * wo.z;
+        f.bx[i] = sign * wo.x;
+        f.by[i] = sign * wo.y;
+        f.z[i] = sign * wo.z;
     }
-    ndf_sigma_n(k, n, R(1.0), bx, by, z, out->sigma_o);
+    ndf_sigma_n(k, n, R(1.0), f.bx, f.by, f.z, out->sigma_o);
 }
 #undef NDF_LENGTH2
 #undef NDF_Q

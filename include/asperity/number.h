@@ -99,6 +99,7 @@
 #define ndf_draw ASP_NDF_NAME(_draw)
 #define ndf_draw_n ASP_NDF_NAME(_draw_n)
 #define ndf_drawn ASP_NDF_NAME(_drawn)
+#define ndf_facets ASP_NDF_NAME(_facets)
 #define ndf_density_n ASP_NDF_NAME(_density_n)
 #define ndf_sigma_n ASP_NDF_NAME(_sigma_n)
 #define ndf_visible_n ASP_NDF_NAME(_visible_n)
