@@ -101,6 +101,20 @@ typedef struct asp_reflectionsf {
 typedef struct asp_refractions { double *wo_x, *wo_y, *wo_z, *F, *pdf, *sigma_i, *sigma_o; } asp_refractions;
 typedef struct asp_refractionsf { float *wo_x, *wo_y, *wo_z, *F, *pdf, *sigma_i, *sigma_o; } asp_refractionsf;
 
+/* A walk at its next facets, on a surface level on average. v is the way back, w the way out: the area seen from v,
+ * D of the facets that mirror v to w and the squared cosine there. Where the walk begins also the area seen from
+ * -w; after a turn the new v and the squared cosine at the facet that turned it. */
+typedef struct asp_meeting {
+    double x, cosine2, y, between2, z, D, area, area_out;
+} asp_meeting;
+typedef struct asp_meetingf {
+    float x, cosine2, y, between2, z, D, area, area_out;
+} asp_meetingf;
+
+/* The meetings of a block. */
+typedef struct asp_meetings { double *x, *cosine2, *y, *between2, *z, *D, *area, *area_out; } asp_meetings;
+typedef struct asp_meetingsf { float *x, *cosine2, *y, *between2, *z, *D, *area, *area_out; } asp_meetingsf;
+
 /* The distribution in one precision, as the world sees it, through its slope map; ndf_loops.h makes
  * all of it from the four formulas.
  *     density    D(m): finite, 0 where m.z <= 0; m need not be unit, D is homogeneous of degree -4
@@ -110,6 +124,8 @@ typedef struct asp_refractionsf { float *wo_x, *wo_y, *wo_z, *F, *pdf, *sigma_i,
  *     reflect    visible, mirror wi in it, and what is known of both directions
  *     refract    visible, mirror wi in it or refract it by u3; eta is the index of the other side over that of
  *                the side of wi, wi.z > 0, and inverse 1/eta
+ *     meet       the first meeting of a walk
+ *     turn       visible, seen from v, v mirrored in it, and the meeting then
  * Loops take a block of n elements, n <= ASP_BLOCK (number.h: 256 in float32, 128 in float64), and
  * their outputs do not overlap anything else. Vectors go number by number: small structs of floats pass
  * through memory in the usual calling convention and stall there. */
@@ -122,6 +138,9 @@ typedef struct asp_ndf_ops {
                     asp_reflection *out);
     void (*refract)(const asp_ndf *k, double wi_x, double wi_y, double wi_z, double u1, double u2, double u3,
                     double eta, double inverse, asp_refraction *out);
+    void (*meet)(const asp_ndf *k, double vx, double vy, double vz, double wx, double wy, double wz, asp_meeting *out);
+    void (*turn)(const asp_ndf *k, double vx, double vy, double vz, double u1, double u2, double wx, double wy, double wz,
+                 asp_meeting *out);
     void (*density_n)(const asp_ndf *k, size_t n, const double *mx, const double *my,
                       const double *mz, double *out);
     void (*sigma_n)(const asp_ndf *k, size_t n, double sign, const double *wx, const double *wy,
@@ -136,6 +155,11 @@ typedef struct asp_ndf_ops {
     void (*refract_n)(const asp_ndf *k, size_t n, const double *wx, const double *wy, const double *wz,
                       const double *u1, const double *u2, const double *u3, const double *eta,
                       const double *inverse, const asp_refractions *out);
+    void (*meet_n)(const asp_ndf *k, size_t n, const double *vx, const double *vy, const double *vz,
+                   const double *wx, const double *wy, const double *wz, const asp_meetings *out);
+    void (*turn_n)(const asp_ndf *k, size_t n, const double *vx, const double *vy, const double *vz,
+                   const double *u1, const double *u2, const double *wx, const double *wy, const double *wz,
+                   const asp_meetings *out);
 } asp_ndf_ops;
 
 typedef struct asp_ndf_opsf {
@@ -147,6 +171,9 @@ typedef struct asp_ndf_opsf {
                     asp_reflectionf *out);
     void (*refract)(const asp_ndff *k, float wi_x, float wi_y, float wi_z, float u1, float u2, float u3,
                     float eta, float inverse, asp_refractionf *out);
+    void (*meet)(const asp_ndff *k, float vx, float vy, float vz, float wx, float wy, float wz, asp_meetingf *out);
+    void (*turn)(const asp_ndff *k, float vx, float vy, float vz, float u1, float u2, float wx, float wy, float wz,
+                 asp_meetingf *out);
     void (*density_n)(const asp_ndff *k, size_t n, const float *mx, const float *my,
                       const float *mz, float *out);
     void (*sigma_n)(const asp_ndff *k, size_t n, float sign, const float *wx, const float *wy,
@@ -161,6 +188,11 @@ typedef struct asp_ndf_opsf {
     void (*refract_n)(const asp_ndff *k, size_t n, const float *wx, const float *wy, const float *wz,
                       const float *u1, const float *u2, const float *u3, const float *eta,
                       const float *inverse, const asp_refractionsf *out);
+    void (*meet_n)(const asp_ndff *k, size_t n, const float *vx, const float *vy, const float *vz,
+                   const float *wx, const float *wy, const float *wz, const asp_meetingsf *out);
+    void (*turn_n)(const asp_ndff *k, size_t n, const float *vx, const float *vy, const float *vz,
+                   const float *u1, const float *u2, const float *wx, const float *wy, const float *wz,
+                   const asp_meetingsf *out);
 } asp_ndf_opsf;
 
 /* How a spec gives the slope map. */
@@ -206,8 +238,8 @@ void asp_ndf_stretch(asp_ndf *out, double by);
 #endif
 
 #define ASP_NDF_OPS_(n, s) { n##density_1##s, n##sigma_1##s, n##visible_1##s, n##normal_1##s, n##reflect_1##s, \
-    n##refract_1##s, n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s, n##reflect_n##s, \
-    n##refract_n##s }
+    n##refract_1##s, n##meet_1##s, n##turn_1##s, n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s, n##reflect_n##s, \
+    n##refract_n##s, n##meet_n##s, n##turn_n##s }
 #define ASP_NDF_OPS_LATTICE(n, lattice) ASP_NDF_OPS_(n##_, _64), ASP_NDF_OPS_(n##_, _32), lattice
 #define ASP_NDF_OPS(n) ASP_NDF_OPS_LATTICE(n, NULL)
 

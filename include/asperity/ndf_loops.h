@@ -412,6 +412,7 @@ ASP_CLONES static void ndf_refract_n(const asp_shape *k, size_t n, const asp_rea
 }
 #undef NDF_LENGTH2
 #undef NDF_Q
+#include "asperity/meeting.h"
 #undef NDF_LOBE
 #undef NDF_ANY_BELOW
 #undef NDF_NOTE

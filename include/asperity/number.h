@@ -100,6 +100,15 @@
 #define ndf_draw_n ASP_NDF_NAME(_draw_n)
 #define ndf_drawn ASP_NDF_NAME(_drawn)
 #define ndf_facets ASP_NDF_NAME(_facets)
+#define ndf_seen ASP_NDF_NAME(_seen)
+#define ndf_halfway ASP_NDF_NAME(_halfway)
+#define ndf_unit_density ASP_NDF_NAME(_unit_density)
+#define ndf_way_back ASP_NDF_NAME(_way_back)
+#define ndf_meet_1 ASP_NDF_NAME(_meet_1)
+#define ndf_turn_1 ASP_NDF_NAME(_turn_1)
+#define ndf_meet_at ASP_NDF_NAME(_meet_at)
+#define ndf_meet_n ASP_NDF_NAME(_meet_n)
+#define ndf_turn_n ASP_NDF_NAME(_turn_n)
 #define ndf_density_n ASP_NDF_NAME(_density_n)
 #define ndf_sigma_n ASP_NDF_NAME(_sigma_n)
 #define ndf_visible_n ASP_NDF_NAME(_visible_n)
@@ -128,6 +137,8 @@
 #undef asp_split_ray
 #undef asp_split_rays
 #undef asp_mirrored_s
+#undef asp_met
+#undef asp_mets
 #if ASP_PRECISION == 64
 #define ASP_SUFFIX _64
 #define asp_real double
@@ -140,6 +151,8 @@
 #define asp_split_ray asp_refraction
 #define asp_split_rays asp_refractions
 #define asp_mirrored_s asp_reflections
+#define asp_met asp_meeting
+#define asp_mets asp_meetings
 #elif ASP_PRECISION == 32
 #define ASP_SUFFIX _32
 #define asp_real float
@@ -152,6 +165,8 @@
 #define asp_split_ray asp_refractionf
 #define asp_split_rays asp_refractionsf
 #define asp_mirrored_s asp_reflectionsf
+#define asp_met asp_meetingf
+#define asp_mets asp_meetingsf
 #else
 #error "define ASP_PRECISION as 64 or 32"
 #endif

@@ -40,13 +40,15 @@
 #define by_wall ASP_NAME(by_wall)
 #define crossing ASP_NAME(crossing)
 #define draw_eval_as ASP_NAME(walk_draw_eval_as)
+#define fly_drawn ASP_NAME(walk_fly_drawn)
+#define mirror_eval ASP_NAME(mirror_eval)
 #endif
 
-/* The Fresnel term at the cosine c times by/over, 0 where c is negative and by 0. Apart, where the compiler makes
+/* The Fresnel term at the squared cosine c2 times by/over, 0 where c2 is negative and by 0. Apart, where the compiler makes
  * one vector of three channels. */
-ASP_CLONES_SINGLE static void fresnel_of(const asp_mat *mat, asp_real c, asp_real by, asp_real over, asp_real F[3])
+ASP_CLONES_SINGLE static void fresnel_of(const asp_mat *mat, asp_real c2, asp_real by, asp_real over, asp_real F[3])
 {
-    aspi_fresnel(mat, c * aspi_abs(c), by, over, F);
+    aspi_fresnel(mat, c2, by, over, F);
 }
 
 ASP_FN asp_v3 wall_normal(const asp_shape *k)
@@ -116,7 +118,7 @@ ASP_FN void scatter(aspi_walker *r, asp_v3 m)
         r->d = r->inside ? aspi_negate(v) : v;
         return;
     }
-    fresnel_of(mat, c, R(1.0), R(1.0), F);
+    fresnel_of(mat, c * aspi_abs(c), R(1.0), R(1.0), F);
     r->carried.r *= F[0];
     r->carried.g *= F[1];
     r->carried.b *= F[2];
@@ -164,7 +166,7 @@ ASP_FN asp_c3 facet_sends(const aspi_walker *r, asp_v3 v, asp_v3 w, int to_insid
         return out;
     }
     p = by_reflection(&mat->ndf, v, w, 0, &c);
-    fresnel_of(mat, c, p * by, seen, F);
+    fresnel_of(mat, c * aspi_abs(c), p * by, seen, F);
     out.r = F[0];
     out.g = F[1];
     out.b = F[2];
@@ -214,7 +216,7 @@ static void by_walls(const aspi_walker *r, asp_v3 v, asp_real seen, const aspi_w
     if (c <= R(0.0))
         return;
     if (r->kind != ASPI_FACETS_REFRACT) {
-        fresnel_of(mat, c, R(1.0), R(1.0), F);
+        fresnel_of(mat, c * aspi_abs(c), R(1.0), R(1.0), F);
         by.r = F[0];
         by.g = F[1];
         by.b = F[2];
@@ -291,14 +293,64 @@ ASP_FN void draw_eval_as(const asp_mat *mat, int kind, int level, asp_v3 wi, asp
     }
 }
 
+ASP_APART static aspi_flown fly_drawn(asp_uniforms *next, void *state, int drawn, asp_real l, asp_real seen,
+                                      asp_real height, asp_real vz, asp_real area, asp_real out_area, asp_real out_rise)
+{
+    int deeper = vz > R(0.0);
+    asp_real u0 = drawn ? R(0.0) : aspi_next_uniform(next, state);
+    asp_real u1 = deeper || area > ASP_SMALLEST ? aspi_next_uniform(next, state) : R(0.0);
+    return aspi_flown_to(drawn, deeper, l, u0, u1, seen, height, aspi_abs(vz), area, out_area, out_rise);
+}
+
+/* Over mirrors level on average; walk_batch.c's eval_walks is this in loops. */
+static void mirror_eval(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_uniforms *next, void *state, asp_real sum[3])
+{
+    const asp_shape *k = &mat->ndf;
+    asp_real seen, height = wi.z, out, l = R(0.0), carried[3] = { R(1.0), R(1.0), R(1.0) }, F[3], open;
+    int met, drawn = 0, c;
+    asp_v3 v = wi;
+    asp_met at;
+    ASPI_OPS(k).meet(k, v.x, v.y, v.z, wo.x, wo.y, wo.z, &at);
+    seen = at.area;
+    out = at.area_out;
+    open = aspi_meets_none(seen, height, out, wo.z);
+    fresnel_of(mat, at.between2, aspi_facets_send(at.D, open), seen, sum);
+    for (met = 1;; met++) {
+        asp_real u1 = aspi_next_uniform(next, state), u2 = aspi_next_uniform(next, state);
+        asp_real u3 = aspi_next_uniform(next, state), meets, most, p;
+        ASPI_OPS(k).turn(k, v.x, v.y, v.z, u1, u2, wo.x, wo.y, wo.z, &at);
+        v = aspi_vector(at.x, at.y, at.z);
+        fresnel_of(mat, at.cosine2, R(1.0), R(1.0), F);
+        for (c = 0; c < 3; c++)
+            carried[c] = carried[c] * F[c];
+        if (drawn | (v.z > R(0.0))) {
+            aspi_flown f = fly_drawn(next, state, drawn, l, seen, height, v.z, at.area, out, wo.z);
+            drawn = 1;
+            l = f.l;
+            meets = f.meets;
+            open = f.open;
+        } else {
+            meets = aspi_meets_one(seen, height, at.area, aspi_abs(v.z));
+            open = aspi_meets_none(seen, height, out, wo.z) * meets;
+        }
+        fresnel_of(mat, at.between2, aspi_facets_send(at.D, open), at.area, F);
+        most = aspi_max(carried[0], aspi_max(carried[1], carried[2]));
+        p = aspi_goes_on(met, most);
+        for (c = 0; c < 3; c++)
+            sum[c] = meets > R(0.0) ? sum[c] + carried[c] * F[c] : sum[c];
+        if (!(u3 < meets * p))
+            return;
+        if (met >= ASPI_WALK_SURE)
+            for (c = 0; c < 3; c++)
+                carried[c] = carried[c] / p;
+    }
+}
+
 ASP_CLONES_SINGLE static void draw_eval(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_uniforms *next,
                                         void *state, asp_c3 *sum)
 {
     asp_real by = crossing(mat, wi, wo);
-    if (mat->model->facets == ASPI_FACETS_REFLECT && aspi_is_level(&mat->ndf))
-        draw_eval_as(mat, ASPI_FACETS_REFLECT, 1, wi, wo, next, state, sum);
-    else
-        draw_eval_as(mat, mat->model->facets, aspi_is_level(&mat->ndf), wi, wo, next, state, sum);
+    draw_eval_as(mat, mat->model->facets, aspi_is_level(&mat->ndf), wi, wo, next, state, sum);
     sum->r *= by;
     sum->g *= by;
     sum->b *= by;
@@ -309,8 +361,17 @@ asp_c3 ASPI_CALL(asp_walk_eval_cos)(const asp_mat *mat, asp_v3 wi, asp_v3 wo, as
 {
     asp_c3 sum;
     sum.r = sum.g = sum.b = aspi_walk_nothing(wi, wo);
-    if (aspi_may_walk(mat, wi, wo))
+    if (!aspi_may_walk(mat, wi, wo))
+        return sum;
+    if (mat->model->facets == ASPI_FACETS_REFLECT && aspi_is_level(&mat->ndf)) {
+        asp_real sent[3];
+        mirror_eval(mat, wi, wo, next, state, sent);
+        sum.r = sent[0];
+        sum.g = sent[1];
+        sum.b = sent[2];
+    } else {
         draw_eval(mat, wi, wo, next, state, &sum);
+    }
     return sum;
 }
 

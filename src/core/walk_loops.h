@@ -6,15 +6,19 @@
 
 #ifndef ASPI_WALK_LOOPS_NAMES
 #define ASPI_WALK_LOOPS_NAMES
+#define aspi_walk_all ASP_NAME(aspi_walk_all)
 #define aspi_walk_again ASP_NAME(aspi_walk_again)
 #define aspi_walk_area ASP_NAME(aspi_walk_area)
 #define aspi_walk_facets ASP_NAME(aspi_walk_facets)
 #define aspi_walk_first ASP_NAME(aspi_walk_first)
 #define aspi_walk_flights ASP_NAME(aspi_walk_flights)
 #define aspi_walk_densities ASP_NAME(aspi_walk_densities)
-#define aspi_walk_open ASP_NAME(aspi_walk_open)
+#define aspi_walk_below_1 ASP_NAME(aspi_walk_below_1)
+#define aspi_walk_begin ASP_NAME(aspi_walk_begin)
+#define aspi_walk_meet ASP_NAME(aspi_walk_meet)
+#define aspi_walk_roulette ASP_NAME(aspi_walk_roulette)
 #define aspi_walk_scatter ASP_NAME(aspi_walk_scatter)
-#define aspi_walk_sent ASP_NAME(aspi_walk_sent)
+#define aspi_walk_spare ASP_NAME(aspi_walk_spare)
 #define aspi_walk_sum ASP_NAME(aspi_walk_sum)
 #define aspi_walk_tint ASP_NAME(aspi_walk_tint)
 /* Of a flight from or to a height that is drawn. */
@@ -42,6 +46,27 @@ ASP_FN void aspi_walk_area(size_t n, asp_real sign, IN z, OUT area)
     ASP_IN_PLACE
     for (i = 0; i < n; i++)
         area[i] = aspi_max(area[i], sign * z[i]);
+}
+
+/* Whether light may walk from every one of these v to its w: aspi_may_walk over mirrors. */
+ASP_FN int aspi_walk_all(size_t n, IN vx, IN vy, IN vz, IN wx, IN wy, IN wz)
+{
+    int not = 0;
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_real nothing = aspi_walk_nothing(aspi_at(vx, vy, vz, i), aspi_at(wx, wy, wz, i));
+        not += !((vz[i] > R(0.0)) & (wz[i] > R(0.0)) & (nothing == R(0.0)));
+    }
+    return not == 0;
+}
+
+/* aspi_next_uniform's bound. */
+ASP_FN void aspi_walk_below_1(size_t n, OUT u)
+{
+    size_t i;
+    ASP_IN_PLACE
+    for (i = 0; i < n; i++)
+        u[i] = aspi_below_1(u[i]);
 }
 
 /* The facets between v and w, and the cosines there. */
@@ -78,12 +103,23 @@ ASP_FN void aspi_walk_again(size_t n, IN area, IN vz, IN seen, IN height, OUT me
     }
 }
 
-/* Where q is not drawn: meets times the probability that light sent to w gets out. */
-ASP_FN void aspi_walk_open(size_t n, IN area, IN wz, IN seen, IN height, IN meets, OUT open)
+/* The same, and what facets send to w, but for F and over the area seen. */
+ASP_FN void aspi_walk_meet(size_t n, IN area, IN vz, IN seen, IN height, IN out_area, IN wz, IN D, OUT meets, OUT sent)
+{
+    size_t i;
+    for (i = 0; i < n; i++) {
+        asp_real p = aspi_meets_one(seen[i], height[i], area[i], aspi_abs(vz[i]));
+        meets[i] = p;
+        sent[i] = aspi_facets_send(D[i], aspi_meets_none(seen[i], height[i], out_area[i], wz[i]) * p);
+    }
+}
+
+/* What the first facets send, which meet all. */
+ASP_FN void aspi_walk_begin(size_t n, IN area, IN vz, IN out_area, IN wz, IN D, OUT sent)
 {
     size_t i;
     for (i = 0; i < n; i++)
-        open[i] = aspi_meets_none(seen[i], height[i], area[i], wz[i]) * meets[i];
+        sent[i] = aspi_facets_send(D[i], aspi_meets_none(area[i], vz[i], out_area[i], wz[i]));
 }
 
 /* Flights of rays whose q is drawn now at the latest: log q at the facet, the probability that there is one, and
@@ -93,32 +129,35 @@ ASP_FN void aspi_walk_flights(size_t n, const int *ASP_RESTRICT drawn, const int
 {
     size_t i;
     for (i = 0; i < n; i++) {
-        asp_real rise = f[FLIGHT_RISE][i], area = f[FLIGHT_AREA][i], u = f[FLIGHT_U1][i];
-        asp_real first = aspi_deeper(R(0.0), f[FLIGHT_U0][i], f[FLIGHT_HEIGHT][i], f[FLIGHT_SEEN][i]);
-        asp_real rate = aspi_ratio_exponent(area, rise), down, up, p;
-        first = drawn[i] ? f[FLIGHT_L][i] : first;
-        down = aspi_deeper(first, u, rise, area);
-        p = aspi_meets_above(first, rate);
-        up = aspi_higher(first, u, rate, p);
-        p = area > ASP_SMALLEST ? p : R(0.0);
-        p = deeper[i] ? R(1.0) : p;
-        l[i] = deeper[i] ? down : up;
-        meets[i] = p;
-        open[i] = aspi_free_above(l[i], f[FLIGHT_OUT_AREA][i], f[FLIGHT_OUT_RISE][i]) * p;
+        aspi_flown to = aspi_flown_to(drawn[i], deeper[i], f[FLIGHT_L][i], f[FLIGHT_U0][i], f[FLIGHT_U1][i],
+                                      f[FLIGHT_SEEN][i], f[FLIGHT_HEIGHT][i], f[FLIGHT_RISE][i], f[FLIGHT_AREA][i],
+                                      f[FLIGHT_OUT_AREA][i], f[FLIGHT_OUT_RISE][i]);
+        l[i] = to.l;
+        meets[i] = to.meets;
+        open[i] = to.open;
     }
 }
 
-/* What facets of density D send, but for F and over the area seen; c becomes its square. */
-ASP_FN void aspi_walk_sent(size_t n, IN D, IN mz, IN open, OUT c, OUT x)
+/* The share of walks that go on by roulette, and what they then carry. */
+ASP_FN void aspi_walk_roulette(size_t n, const int *ASP_RESTRICT met, OUT r, OUT g, OUT b, OUT share)
 {
     size_t i;
     ASP_IN_PLACE
     for (i = 0; i < n; i++) {
-        asp_real p = R(0.25) * D[i];
-        p = aspi_min(c[i], mz[i]) <= R(0.0) ? R(0.0) : p;
-        x[i] = p * open[i];
-        c[i] = c[i] * aspi_abs(c[i]);
+        asp_real p = aspi_goes_on(met[i], aspi_max(r[i], aspi_max(g[i], b[i])));
+        r[i] = r[i] / p;
+        g[i] = g[i] / p;
+        b[i] = b[i] / p;
+        share[i] = p;
     }
+}
+
+/* By how much the number that decides it is below the probability that a walk goes on. */
+ASP_FN void aspi_walk_spare(size_t n, IN meets, IN share, IN u, OUT spare)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        spare[i] = meets[i] * share[i] - u[i];
 }
 
 ASP_FN void aspi_walk_sum(size_t n, IN carried, IN sent, IN meets, OUT sum)

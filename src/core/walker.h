@@ -18,6 +18,7 @@
 #ifndef ASPI_WALKER_NAMES
 #define ASPI_WALKER_NAMES
 #define aspi_area_seen ASP_NAME(aspi_area_seen)
+#define aspi_below_1 ASP_NAME(aspi_below_1)
 #define aspi_cross_over ASP_NAME(aspi_cross_over)
 #define aspi_deeper ASP_NAME(aspi_deeper)
 #define aspi_facing ASP_NAME(aspi_facing)
@@ -47,6 +48,10 @@
 #define aspi_walkable ASP_NAME(aspi_walkable)
 #define aspi_walls_seen ASP_NAME(aspi_walls_seen)
 #define aspi_walk_mixture ASP_NAME(aspi_walk_mixture)
+#define aspi_facets_send ASP_NAME(aspi_facets_send)
+#define aspi_flown ASP_NAME(aspi_flown)
+#define aspi_flown_to ASP_NAME(aspi_flown_to)
+#define aspi_goes_on ASP_NAME(aspi_goes_on)
 #define aspi_walker ASP_NAME(aspi_walker)
 #define aspi_way_out ASP_NAME(aspi_way_out)
 /* Roulette begins after so many facets; walks end by it, and by this bound where nothing is absorbed. */
@@ -83,12 +88,13 @@ typedef struct aspi_way_out {
     asp_real height, area;
 } aspi_way_out;
 
-ASP_FN asp_real aspi_next_uniform(asp_uniforms *next, void *state)
+/* float32 rounds numbers near 1 up. */
+ASP_FN asp_real aspi_below_1(asp_real u)
 {
-    asp_real u = R(next(state));
-    /* float32 rounds numbers near 1 up */
     return u < R(1.0) ? u : (ASP_PRECISION == 64 ? R(1.0 - 0x1p-53) : R(1.0 - 0x1p-24));
 }
+
+ASP_FN asp_real aspi_next_uniform(asp_uniforms *next, void *state) { return aspi_below_1(R(next(state))); }
 
 ASP_FN asp_real aspi_walk_uniform(const aspi_walker *r) { return aspi_next_uniform(r->next, r->state); }
 
@@ -266,6 +272,37 @@ ASP_FN int aspi_survives(aspi_walker *r, int met)
     r->carried.g /= p;
     r->carried.b /= p;
     return 1;
+}
+
+/* What facets of density D send, of what meets them and then gets out, but for F and over the area seen. */
+ASP_FN asp_real aspi_facets_send(asp_real D, asp_real open) { return R(0.25) * D * open; }
+
+/* The share of walks that go on by roulette after so many turns: the most that they carry. */
+ASP_FN asp_real aspi_goes_on(int met, asp_real most)
+{
+    asp_real p = aspi_min(most, R(1.0));
+    p = met < ASPI_WALK_SURE ? R(1.0) : p;
+    return met < ASPI_WALK_LONGEST ? p : R(0.0);
+}
+
+/* A flight from or to a height that is drawn: log q at the facet, the probability that there is one, and that
+ * times the probability that light gets out from there. */
+typedef struct aspi_flown { asp_real l, meets, open; } aspi_flown;
+
+ASP_FN aspi_flown aspi_flown_to(int drawn, int deeper, asp_real l, asp_real u0, asp_real u1, asp_real seen,
+                                asp_real height, asp_real rise, asp_real area, asp_real out_area, asp_real out_rise)
+{
+    asp_real first = aspi_deeper(R(0.0), u0, height, seen), rate = aspi_ratio_exponent(area, rise), down, up, p;
+    aspi_flown f;
+    first = drawn ? l : first;
+    down = aspi_deeper(first, u1, rise, area);
+    p = aspi_meets_above(first, rate);
+    up = aspi_higher(first, u1, rate, p);
+    p = area > ASP_SMALLEST ? p : R(0.0);
+    f.meets = deeper ? R(1.0) : p;
+    f.l = deeper ? down : up;
+    f.open = aspi_free_above(f.l, out_area, out_rise) * f.meets;
+    return f;
 }
 
 /* The density for multiple importance sampling: `once`, of one meeting, in the share of light that it lets out,
