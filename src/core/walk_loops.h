@@ -51,13 +51,13 @@ ASP_FN void aspi_walk_area(size_t n, asp_real sign, IN z, OUT area)
 /* Whether light may walk from every one of these v to its w: aspi_may_walk over mirrors. */
 ASP_FN int aspi_walk_all(size_t n, IN vx, IN vy, IN vz, IN wx, IN wy, IN wz)
 {
-    int not = 0;
+    int refused = 0;
     size_t i;
     for (i = 0; i < n; i++) {
         asp_real nothing = aspi_walk_nothing(aspi_at(vx, vy, vz, i), aspi_at(wx, wy, wz, i));
-        not += !((vz[i] > R(0.0)) & (wz[i] > R(0.0)) & (nothing == R(0.0)));
+        refused += !((vz[i] > R(0.0)) & (wz[i] > R(0.0)) & (nothing == R(0.0)));
     }
-    return not == 0;
+    return refused == 0;
 }
 
 /* aspi_next_uniform's bound. */
