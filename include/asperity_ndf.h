@@ -138,9 +138,10 @@ typedef struct asp_ndf_ops {
                     asp_reflection *out);
     void (*refract)(const asp_ndf *k, double wi_x, double wi_y, double wi_z, double u1, double u2, double u3,
                     double eta, double inverse, asp_refraction *out);
-    void (*meet)(const asp_ndf *k, double vx, double vy, double vz, double wx, double wy, double wz, asp_meeting *out);
-    void (*turn)(const asp_ndf *k, double vx, double vy, double vz, double u1, double u2, double wx, double wy, double wz,
+    void (*meet)(const asp_ndf *k, double vx, double vy, double vz, double wx, double wy, double wz,
                  asp_meeting *out);
+    void (*turn)(const asp_ndf *k, double vx, double vy, double vz, double u1, double u2, double wx, double wy,
+                 double wz, asp_meeting *out);
     void (*density_n)(const asp_ndf *k, size_t n, const double *mx, const double *my,
                       const double *mz, double *out);
     void (*sigma_n)(const asp_ndf *k, size_t n, double sign, const double *wx, const double *wy,
@@ -171,9 +172,10 @@ typedef struct asp_ndf_opsf {
                     asp_reflectionf *out);
     void (*refract)(const asp_ndff *k, float wi_x, float wi_y, float wi_z, float u1, float u2, float u3,
                     float eta, float inverse, asp_refractionf *out);
-    void (*meet)(const asp_ndff *k, float vx, float vy, float vz, float wx, float wy, float wz, asp_meetingf *out);
-    void (*turn)(const asp_ndff *k, float vx, float vy, float vz, float u1, float u2, float wx, float wy, float wz,
+    void (*meet)(const asp_ndff *k, float vx, float vy, float vz, float wx, float wy, float wz,
                  asp_meetingf *out);
+    void (*turn)(const asp_ndff *k, float vx, float vy, float vz, float u1, float u2, float wx, float wy,
+                 float wz, asp_meetingf *out);
     void (*density_n)(const asp_ndff *k, size_t n, const float *mx, const float *my,
                       const float *mz, float *out);
     void (*sigma_n)(const asp_ndff *k, size_t n, float sign, const float *wx, const float *wy,
@@ -238,8 +240,8 @@ void asp_ndf_stretch(asp_ndf *out, double by);
 #endif
 
 #define ASP_NDF_OPS_(n, s) { n##density_1##s, n##sigma_1##s, n##visible_1##s, n##normal_1##s, n##reflect_1##s, \
-    n##refract_1##s, n##meet_1##s, n##turn_1##s, n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s, n##reflect_n##s, \
-    n##refract_n##s, n##meet_n##s, n##turn_n##s }
+    n##refract_1##s, n##meet_1##s, n##turn_1##s, n##density_n##s, n##sigma_n##s, n##visible_n##s, n##normal_n##s, \
+    n##reflect_n##s, n##refract_n##s, n##meet_n##s, n##turn_n##s }
 #define ASP_NDF_OPS_LATTICE(n, lattice) ASP_NDF_OPS_(n##_, _64), ASP_NDF_OPS_(n##_, _32), lattice
 #define ASP_NDF_OPS(n) ASP_NDF_OPS_LATTICE(n, NULL)
 

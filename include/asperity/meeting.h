@@ -6,13 +6,14 @@
 /* The area of facets seen from v: at least v.z, which rounding must not undercut. */
 ASP_FN asp_real ndf_seen(const asp_shape *k, asp_v3 v) { return aspi_max(ndf_sigma_at(k, aspi_view(k, v)), v.z); }
 
+/* D of a unit normal from that of the half vector. */
 ASP_FN asp_real ndf_unit_density(asp_real D, asp_real cosine2)
 {
     asp_real l2 = R(4.0) * cosine2;
     return aspi_finite(D * (l2 * l2));
 }
 
-/* D of the facets that mirror v to w, and the squared cosine there. */
+/* The normal, of any length, of facets that mirror v to w, and the squared cosine there. */
 ASP_FN asp_v3 ndf_halfway(asp_v3 v, asp_v3 w, asp_real *cosine2)
 {
     v.x = v.x + w.x;

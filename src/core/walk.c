@@ -44,8 +44,8 @@
 #define mirror_eval ASP_NAME(mirror_eval)
 #endif
 
-/* The Fresnel term at the squared cosine c2 times by/over, 0 where c2 is negative and by 0. Apart, where the compiler makes
- * one vector of three channels. */
+/* The Fresnel term at the squared cosine c2 times by/over, 0 where c2 is negative and by 0. Apart, where the compiler
+ * makes one vector of three channels. */
 ASP_CLONES_SINGLE static void fresnel_of(const asp_mat *mat, asp_real c2, asp_real by, asp_real over, asp_real F[3])
 {
     aspi_fresnel(mat, c2, by, over, F);
@@ -302,7 +302,7 @@ ASP_APART static aspi_flown fly_drawn(asp_uniforms *next, void *state, int drawn
     return aspi_flown_to(drawn, deeper, l, u0, u1, seen, height, aspi_abs(vz), area, out_area, out_rise);
 }
 
-/* Over mirrors level on average; walk_batch.c's eval_walks is this in loops. */
+/* Over mirrors level on average; walk_batch.c's turn_walks is this in loops. */
 static void mirror_eval(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_uniforms *next, void *state, asp_real sum[3])
 {
     const asp_shape *k = &mat->ndf;
