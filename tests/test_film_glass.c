@@ -1,6 +1,7 @@
 /* test_film_glass.c - thin films on dielectrics: reflectances by characteristic matrices from either side
  *
  * The matrices are those of Born, Wolf, sec. 1.6; nothing of the library's own film is used. */
+#include "bsdf/energy.h"
 #include "scatter_test.h"
 
 #include <complex.h>
@@ -158,6 +159,71 @@ static void check_carried(void)
     expect(once < 1e-12, "the mean weight of samples is never above 1", once);
 }
 
+/* A film that is too thin to be seen: walks by the same numbers are those over bare glass, each channel and where walls
+ * close a skewed surface, but for the film's table, which makes a choice in 10^4 another. */
+static void check_walks(void)
+{
+    enum { WALKS = 20000 };
+    static const char *const surfaces[] = { "ggx:alpha=0.6", "ggx:alpha=0.6,mean_x=0.5" };
+    double worst = 0;
+    for (int k = 0; k < 2; k++) {
+        asp_ndf surface = ndf(surfaces[k]);
+        asp_material none = asp_dielectric(&surface, 1.5, 0, ASP_RADIANCE, 0), film = none;
+        double sum[4][3] = { { 0 } }, bare_sum[4] = { 0 };
+        if (asp_film(&film, NULL, 1.5, 1e-6, NULL) != ASP_OK)
+            worst = 1;
+        for (int i = 0; i < WALKS; i++) {
+            asp_vec3 wi = direction(1.3 * sqrt((i % 89) / 89.0), i), wo = direction(1.4 * sqrt((i % 97) / 97.0), 2.4 * i);
+            uint64_t a = (uint64_t)i, b = a;
+            asp_rgb f;
+            wi = i & 1 ? flip(wi) : wi;
+            wo = i & 2 ? flip(wo) : wo;
+            f = asp_walk_eval_cos(&film, wi, wo, next, &a);
+            bare_sum[i & 3] += asp_walk_eval_cos(&none, wi, wo, next, &b).g;
+            for (int ch = 0; ch < 3; ch++)
+                sum[i & 3][ch] += channel(f, ch);
+        }
+        for (int way = 0; way < 4; way++)
+            for (int ch = 0; ch < 3; ch++)
+                worst = fmax(worst, fabs(sum[way][ch] / bare_sum[way] - 1));
+    }
+    expect(worst < 3e-3, "walks under a film that is not there", worst);
+}
+
+/* Channels that change places do so in all that comes of them: the mean, by which facets choose, stays. */
+static void check_channels(void)
+{
+    static const char *const specs[] = { "dielectric:eta=1.5,film=300,film_eta=2.2,ndf=(ggx:alpha=0.6,mean_x=0.5)",
+                                         "dielectric:eta=1.5,film=300,film_eta=2.2,thin=1,ndf=(ggx:alpha=0.6)" };
+    double worst = 0;
+    for (int k = 0; k < 2; k++) {
+        asp_material mat = material(specs[k]), turned = mat;
+        for (int i = 0; i < 3 * ENERGY_FILM_NODES; i++)
+            turned.energy[ENERGY_FILM + (i + ENERGY_FILM_NODES) % (3 * ENERGY_FILM_NODES)] = mat.energy[ENERGY_FILM + i];
+        for (int i = 0; i < 4000; i++) {
+            asp_vec3 wi = direction(1.3 * sqrt((i % 89) / 89.0), i), wo = direction(1.4 * sqrt((i % 97) / 97.0), 2.4 * i);
+            uint64_t a = (uint64_t)i, b = a;
+            double u1 = next(&a), u2 = next(&b), u3 = next(&a);
+            asp_rgb before[3], after[3];
+            next(&b);
+            wi = i & 1 ? flip(wi) : wi;
+            wo = i & 2 ? flip(wo) : wo;
+            before[0] = asp_eval(&mat, wi, wo);
+            after[0] = asp_eval(&turned, wi, wo);
+            before[1] = asp_sample_lobe(&mat, wi, u1, u2, u3).weight;
+            after[1] = asp_sample_lobe(&turned, wi, u1, u2, u3).weight;
+            before[2] = asp_walk_eval_cos(&mat, wi, wo, next, &a);
+            after[2] = asp_walk_eval_cos(&turned, wi, wo, next, &b);
+            for (int j = 0; j < 3; j++)
+                for (int ch = 0; ch < 3; ch++) {
+                    double x = channel(before[j], ch), y = channel(after[j], (ch + 1) % 3);
+                    worst = fmax(worst, fabs(x - y) / fmax(fabs(x), 1e-3));
+                }
+        }
+    }
+    expect(worst < 1e-9, "channels that change places", worst);
+}
+
 /* What asp_film makes is what a spec makes, and what it refuses it leaves as it was. */
 static void check_asked(void)
 {
@@ -198,6 +264,8 @@ int main(void)
     check_shares();
     check_sheet();
     check_carried();
+    check_walks();
+    check_channels();
     check_asked();
     return finish();
 }
