@@ -53,9 +53,12 @@ static double alpha_along(const asp_ndf *level, double x, double y)
 /* b.g is the approximations' one number. */
 static asp_status rough_diffuse_prepare(asp_material *out, asp_error *err)
 {
-    asp_ndf level = out->ndf;
+    asp_ndf level;
     double x, y, angle, mean;
     (void)err;
+    if (out->b.r == ROUGH_EXACT)
+        return ASP_OK;
+    level = out->ndf;
     level.map.tx = level.map.ty = 0.0;
     x = alpha_along(&level, 1.0, 0.0);
     y = alpha_along(&level, 0.0, 1.0);
