@@ -322,6 +322,7 @@ typedef struct asp_material {
     int     fresnel;                      /* which Fresnel term the numbers below are for */
     int     transport;                    /* asp_transport */
     asp_rgb a, b, c, d;                   /* the model's colours; see its record */
+    double  film, film_eta;               /* thickness in nm of a film on the facets, 0: none; its index */
     double  energy[ASP_ENERGY_NUMBERS];   /* what the model prepared */
     asp_ndf ndf;
 } asp_material;
@@ -347,9 +348,9 @@ asp_material asp_dielectric(const asp_ndf *ndf, double eta, int thin, int transp
 
 /* Lays a film of index film_eta, [1, 10], and `thickness` nm, (0, 10000], on every facet of a conductor, a dielectric
  * (from both sides; a sheet's both faces), a compensated conductor or a Lambert + rough reflection: three channels in
- * linear sRGB, by 41 wavelengths. metal: one of asp_metals() beneath, with its spectrum, or NULL for the material's own
- * index. ASP_EINVAL where there is none, where a dielectric's is 1, and of other materials: mat is as it was. */
-asp_status asp_film(asp_material *mat, const asp_metal *metal, double film_eta, double thickness, asp_error *err);
+ * linear sRGB, by 41 wavelengths; one of asp_metals(), known by its numbers, has its spectrum. ASP_EINVAL where there is
+ * no index, where a dielectric's is 1, and of other materials: mat is as it was. */
+asp_status asp_film(asp_material *mat, double film_eta, double thickness, asp_error *err);
 
 /* Lambertian facets of an albedo in [0, 1]; eval is a quadrature of 466 nodes. Its relative error, above
  * cosines of 0.1: about 1e-3, at most 0.02; it grows near grazing (0.1 for ggx of alpha 0.3). */
@@ -363,6 +364,12 @@ asp_material asp_plastic(const asp_ndf *ndf, asp_rgb albedo, double eta, int mas
  * read). ASP_EINVAL for other materials and under films: out is as it was. */
 asp_status asp_eval_spectrum(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, size_t n, const double *eta,
                        const double *k, double *out);
+
+/* f of a conductor or a dielectric at n wavelengths nm[i], [380, 780]: a metal of asp_metals() has its spectrum, an index
+ * that is the same in three channels is that of all wavelengths, and a film is exact. ASP_EINVAL for other materials, for
+ * f0 and tint and for an index per channel; and for a wavelength outside: out is then as it was. */
+asp_status asp_eval_wavelengths(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, size_t n, const double *nm,
+                                double *out, asp_error *err);
 
 typedef struct asp_bsdf_sample {
     asp_vec3 wo;

@@ -10,7 +10,7 @@
 #define NODES 30      /* cells of the library's table over the cosine on the less dense side */
 
 /* A stack seen from the index n0 at the cosine c: a film n1 of thickness d on n2. */
-typedef struct stack { double n0, n1, d, n2, c; } stack;
+typedef struct stack { double n0, n1, d, n2, c; int sheet; } stack;
 
 static double by_matrices(const void *context, double nm)
 {
@@ -24,7 +24,7 @@ static double by_matrices(const void *context, double nm)
         double r = cabs((q0 * b - c) / (q0 * b + c));
         total += 0.5 * r * r;
     }
-    return total;
+    return f->sheet ? 2 * total / (1 + total) : total;
 }
 
 static double channel(asp_rgb c, int i) { return i == 0 ? c.r : i == 1 ? c.g : c.b; }
@@ -53,7 +53,7 @@ static asp_material bare(glass g)
 /* Bare Fresnel reflectance from n0 to n2, which divides out of the bare material. */
 static double plain(double n0, double n2, double c)
 {
-    stack f = { n0, n2, 100, n2, c };
+    stack f = { n0, n2, 100, n2, c, 0 };
     return by_matrices(&f, 550);
 }
 
@@ -70,8 +70,8 @@ static void check_shares(void)
             double dense = sqrt(1 - (1 - rare * rare) * (less * less) / (more * more));
             double c_o = eta > 1 ? rare : dense, c_i = eta > 1 ? dense : rare;
             asp_vec3 out = direction(acos(c_o), 0.3), in = flip(direction(acos(c_i), 0.3));
-            stack above = { 1, glasses[g].film_eta, glasses[g].film, eta, c_o };
-            stack below = { eta, glasses[g].film_eta, glasses[g].film, 1, c_i };
+            stack above = { 1, glasses[g].film_eta, glasses[g].film, eta, c_o, 0 };
+            stack below = { eta, glasses[g].film_eta, glasses[g].film, 1, c_i, 0 };
             asp_vec3 away = direction(acos(c_o), 0.3 + PI), deep = flip(direction(acos(c_i), 0.3 + PI));
             asp_rgb f[4] = { asp_eval(&film, out, away), asp_eval(&film, in, deep), asp_eval(&film, out, flip(direction(acos(c_i), 0.3))),
                              asp_eval(&film, in, direction(acos(c_o), 0.3)) };
@@ -107,6 +107,67 @@ static void check_shares(void)
     expect(total < 1e-12, "total reflection is total", total);
 }
 
+/* f at a wavelength, for asp_rgb_of_reflectance. */
+typedef struct pairing { const asp_material *mat; asp_vec3 wi, wo; } pairing;
+
+static double at_wavelength(const void *context, double nm)
+{
+    const pairing *p = (const pairing *)context;
+    double f = NAN;
+    return asp_eval_wavelengths(p->mat, p->wi, p->wo, 1, &nm, &f, NULL) == ASP_OK ? f : NAN;
+}
+
+/* By wavelength: each by characteristic matrices, and all of them together the three channels at the table's cosines. */
+static void check_wavelengths(void)
+{
+    static const char *const specs[] = { "conductor:metal=Al,film=60,film_eta=1.6,ndf=(ggx:alpha=0.3)",
+                                         "dielectric:eta=1.5,film=300,film_eta=1.8,ndf=(ggx:alpha=0.3)",
+                                         "dielectric:eta=0.7,film=260,film_eta=1.8,mask=uncorrelated,ndf=(ggx:alpha=0.3)",
+                                         "dielectric:eta=1.5,thin=1,film=300,film_eta=1.8,ndf=(ggx:alpha=0.3)",
+                                         "dielectric:eta=1.5,ndf=(ggx:alpha=0.3)", "conductor:eta=1.5,k=0,ndf=(ggx:alpha=0.3)" };
+    const double nm[3] = { 380, 551.5, 780 };
+    double alone = 0, together = 0;
+    for (int k = 0; k < 6; k++) {
+        asp_material mat = material(specs[k]);
+        double eta = k == 0 ? 1.5 : mat.c.r, less = fmin(eta, 1), more = fmax(eta, 1);
+        for (int i = 1; i <= NODES; i++)
+            for (int way = 0; way < 4; way++) {
+                double rare = (double)i / NODES, dense = sqrt(1 - (1 - rare * rare) * (less * less) / (more * more));
+                double c_o = eta > 1 ? rare : dense, c_i = eta > 1 ? dense : rare, c, f[3];
+                int below = way & 1, crosses = way >> 1, sheet = k == 3;
+                asp_vec3 wi, wo;
+                pairing p;
+                asp_rgb sum, rgb;
+                if (k == 0 || k == 5)
+                    below = crosses = 0;
+                c = below && !sheet ? c_i : c_o;
+                /* from above at the azimuth 0.3 and on to the opposite; from below the way back, but for sheets */
+                wi = direction(acos(c), below && !sheet ? 0.3 + PI : 0.3);
+                wo = direction(acos(crosses && !sheet ? (below ? c_o : c_i) : c), below && !sheet ? 0.3 : 0.3 + PI);
+                wi.z = below ? -wi.z : wi.z;
+                wo.z = below != crosses ? -wo.z : wo.z;
+                p = (pairing){ &mat, wi, wo };
+                sum = asp_rgb_of_reflectance(at_wavelength, &p);
+                rgb = asp_eval(&mat, wi, wo);
+                for (int ch = 0; ch < 3; ch++)
+                    together = fmax(together, fabs(channel(sum, ch) / channel(rgb, ch) - 1));
+                if (asp_eval_wavelengths(&mat, wi, wo, 3, nm, f, NULL) != ASP_OK || !(f[1] > 0))
+                    alone = 1;
+                for (int j = 0; j < 3 && mat.film > 0 && k > 0; j++) {
+                    stack s = { below && !sheet ? eta : 1, mat.film_eta, mat.film, below && !sheet ? 1 : eta, c, sheet };
+                    asp_material none = mat;
+                    double F = by_matrices(&s, nm[j]), less_film = plain(s.n0, s.n2, c), x;
+                    none.fresnel = bare(glasses[0]).fresnel;
+                    less_film = sheet ? 2 * less_film / (1 + less_film) : less_film;
+                    x = asp_eval(&none, wi, wo).r / (crosses ? 1 - less_film : less_film);
+                    alone = fmax(alone, fabs(f[j] / ((crosses ? 1 - F : F) * x) - 1));
+                }
+            }
+    }
+    expect(alone < 1e-10, "f at a wavelength by characteristic matrices", alone);
+    expect(together < 2e-5, "all wavelengths together are the three channels (weights in six digits)", together);
+}
+
 /* A sheet has the film on both faces: R = 2F/(1 + F), and the rest passes as if mirrored. */
 static void check_sheet(void)
 {
@@ -117,12 +178,12 @@ static void check_sheet(void)
         asp_material mirror = asp_mirror(&surface, 0);
         for (int i = 1; i <= NODES; i++) {
             double c = (double)i / NODES;
-            stack f = { 1, glasses[g].film_eta, glasses[g].film, glasses[g].eta, c };
+            stack f = { 1, glasses[g].film_eta, glasses[g].film, glasses[g].eta, c, 1 };
             asp_vec3 w = direction(acos(c), 0.3), v = direction(acos(c), 0.3 + PI), through = { v.x, v.y, -v.z };
             asp_rgb a = asp_eval(&film, w, v), b = asp_eval(&film, w, through);
             double x = asp_eval(&mirror, w, v).r;
             for (int ch = 0; ch < 3; ch++) {
-                double F = share(f, ch), R = 2 * F / (1 + F);
+                double R = share(f, ch);
                 worst = fmax(worst, fmax(fabs(channel(a, ch) / x - R), fabs(channel(b, ch) / x - (1 - R))));
             }
         }
@@ -170,7 +231,7 @@ static void check_walks(void)
         asp_ndf surface = ndf(surfaces[k]);
         asp_material none = asp_dielectric(&surface, 1.5, 0, ASP_RADIANCE, 0), film = none;
         double sum[4][3] = { { 0 } }, bare_sum[4] = { 0 };
-        if (asp_film(&film, NULL, 1.5, 1e-6, NULL) != ASP_OK)
+        if (asp_film(&film, 1.5, 1e-6, NULL) != ASP_OK)
             worst = 1;
         for (int i = 0; i < WALKS; i++) {
             asp_vec3 wi = direction(1.3 * sqrt((i % 89) / 89.0), i), wo = direction(1.4 * sqrt((i % 97) / 97.0), 2.4 * i);
@@ -224,11 +285,19 @@ static void check_channels(void)
     expect(worst < 1e-9, "channels that change places", worst);
 }
 
+/* out stays as it was, and the name is told. */
+static int refuses(const asp_material *mat, double nm, const char *name)
+{
+    double out = -1;
+    asp_error err;
+    asp_vec3 up = { 0, 0, 1 };
+    return asp_eval_wavelengths(mat, up, up, 1, &nm, &out, &err) == ASP_EINVAL && out == -1 && !strcmp(err.name, name);
+}
+
 /* What asp_film makes is what a spec makes, and what it refuses it leaves as it was. */
 static void check_asked(void)
 {
     asp_material mat = bare(glasses[0]), spec = film_on(glasses[0], ""), before;
-    asp_metal stranger = { "stranger", "", { 1, 1, 1 }, { 1, 1, 1 }, { 1, 1, 1 } };
     asp_material plastic = material("plastic:ndf=(ggx)"), kin = material("compensated_dielectric:ndf=(ggx)");
     asp_material f0 = material("conductor:f0=0.5,ndf=(ggx)"), gold = material("conductor:metal=Au,ndf=(ggx:alpha=0.2)");
     asp_material golden = material("conductor:metal=Au,film=200,film_eta=1.5,ndf=(ggx:alpha=0.2)");
@@ -236,32 +305,36 @@ static void check_asked(void)
     asp_material coated = material("compensated:metal=Au,film=200,film_eta=1.5,ndf=(ggx:alpha=0.2)");
     asp_error err;
     int wrong = 0;
-    wrong += asp_film(&mat, NULL, glasses[0].film_eta, glasses[0].film, &err) != ASP_OK;
+    wrong += asp_film(&mat, glasses[0].film_eta, glasses[0].film, &err) != ASP_OK;
     wrong += memcmp(mat.energy, spec.energy, sizeof mat.energy) != 0 || mat.fresnel != spec.fresnel;
-    wrong += asp_film(&gold, asp_find_metal("Au"), 1.5, 200, &err) != ASP_OK;
+    wrong += asp_film(&gold, 1.5, 200, &err) != ASP_OK;
     wrong += memcmp(gold.energy, golden.energy, sizeof gold.energy) != 0 || gold.fresnel != golden.fresnel;
-    wrong += asp_film(&given, asp_find_metal("Au"), 1.5, 200, &err) != ASP_OK;
+    wrong += asp_film(&given, 1.5, 200, &err) != ASP_OK;
     wrong += memcmp(given.energy, coated.energy, sizeof given.energy) != 0 || given.fresnel != coated.fresnel;
     expect(wrong == 0, "asp_film and the key film agree, but for", wrong);
     wrong = 0;
     before = mat;
-    wrong += asp_film(&mat, NULL, 0.9, 100, &err) != ASP_EINVAL || strcmp(err.name, "film_eta") || err.low != 1 || err.high != 10;
-    wrong += asp_film(&mat, NULL, 1.5, NAN, &err) != ASP_EINVAL || strcmp(err.name, "film") || !err.low_open || err.high != 1e4;
-    wrong += asp_film(&mat, &stranger, 1.5, 100, &err) != ASP_EINVAL || strcmp(err.name, "metal");
+    wrong += asp_film(&mat, 0.9, 100, &err) != ASP_EINVAL || strcmp(err.name, "film_eta") || err.low != 1 || err.high != 10;
+    wrong += asp_film(&mat, 1.5, NAN, &err) != ASP_EINVAL || strcmp(err.name, "film") || !err.low_open || err.high != 1e4;
     wrong += memcmp(&mat, &before, sizeof mat) != 0;
-    wrong += asp_film(&plastic, NULL, 1.5, 100, &err) != ASP_EINVAL || asp_film(&kin, NULL, 1.5, 100, &err) != ASP_EINVAL;
-    wrong += asp_film(&f0, NULL, 1.5, 100, &err) != ASP_EINVAL;
+    wrong += asp_film(&plastic, 1.5, 100, &err) != ASP_EINVAL || asp_film(&kin, 1.5, 100, &err) != ASP_EINVAL;
+    wrong += asp_film(&f0, 1.5, 100, &err) != ASP_EINVAL;
     mat = asp_dielectric(&mat.ndf, 1, 0, ASP_RADIANCE, 0);
-    wrong += asp_film(&mat, NULL, 1.5, 100, &err) != ASP_EINVAL;
+    wrong += asp_film(&mat, 1.5, 100, &err) != ASP_EINVAL;
     wrong += asp_material_parse(NULL, "dielectric:eta=1,film=100,ndf=(ggx)", &mat, &err) != ASP_EINVAL || err.position != 22;
     wrong += asp_material_parse(NULL, "dielectric:film_eta=1.4,ndf=(ggx)", &mat, &err) != ASP_EINVAL;
     wrong += asp_material_parse(NULL, "compensated_dielectric:film=100,ndf=(ggx)", &mat, &err) != ASP_EUNKNOWN;
+    wrong += !refuses(&plastic, 500, "plastic") || !refuses(&f0, 500, "f0") || !refuses(&gold, 379, "wavelength");
+    wrong += !refuses(&gold, NAN, "wavelength") || !refuses(&gold, 781, "wavelength");
+    mat = material("conductor:eta=0.2/0.3/0.4,k=3,ndf=(ggx)");
+    wrong += !refuses(&mat, 500, "eta");
     expect(wrong == 0, "films that cannot be are refused, but for", wrong);
 }
 
 int main(void)
 {
     check_shares();
+    check_wavelengths();
     check_sheet();
     check_carried();
     check_walks();

@@ -95,10 +95,14 @@ enum { ROUGH_EXACT, ROUGH_OREN_NAYAR, ROUGH_FUJII, ROUGH_EON, ROUGH_FORMS };
 
 /* asp_film but for ranges and for the model's own tables: linear sRGB reflectance over the cosine, of a dielectric
  * over that on its less dense side. */
-asp_status aspi_film(asp_material *out, const asp_metal *metal, double film_eta, double thickness, asp_error *err);
+asp_status aspi_film(asp_material *out, double film_eta, double thickness, asp_error *err);
 
-/* The keys film and film_eta, over a metal or, NULL, over out->c + i out->d. */
-asp_status aspi_parse_film(aspi_spec *spec, const asp_metal *metal, asp_material *out, asp_error *err);
+/* The keys film and film_eta. */
+asp_status aspi_parse_film(aspi_spec *spec, asp_material *out, asp_error *err);
+
+/* f of a dielectric but for the share F or 1 - F, the cosine at the facet, the index there and whether light crosses. */
+typedef struct aspi_dielectric_part { double f, c, eta; int crosses; } aspi_dielectric_part;
+aspi_dielectric_part aspi_dielectric_part_of(const asp_material *mat, asp_vec3 wi, asp_vec3 wo);
 
 /* The keys that name a Fresnel term: metal, eta with k, eta alone, f0 with tint. `initial` is taken
  * when none is given. */

@@ -35,7 +35,18 @@ static asp_status dielectric_parse(aspi_spec *spec, asp_material *out, asp_error
     out->c.r = out->c.g = out->c.b = eta;
     out->a.r = out->a.g = out->a.b = thin;
     /* its kin know no films */
-    return s || !aspi_bsdf_has(out->model, "film") ? s : aspi_parse_film(spec, NULL, out, err);
+    return s || !aspi_bsdf_has(out->model, "film") ? s : aspi_parse_film(spec, out, err);
+}
+
+aspi_dielectric_part aspi_dielectric_part_of(const asp_material *mat, asp_vec3 wi, asp_vec3 wo)
+{
+    aspi_dielectric_part out;
+    dielectric_case_64 k;
+    out.f = dielectric_part_as_64(mat, wi, wo, 0, mat->a.r > 0.0, 0, mat->mask, &k);
+    out.c = k.c;
+    out.eta = k.eta;
+    out.crosses = k.refracts;
+    return out;
 }
 
 static const aspi_bsdf_key dielectric_keys[] = { ASPI_DIELECTRIC_KEYS, ASPI_FILM_KEYS, { NULL, NULL } };
@@ -61,6 +72,7 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define case_at ASP_NDF_NAME(_case_at)
 #define lit ASP_NDF_NAME(_lit)
 #define eval_as ASP_NDF_NAME(_eval_as)
+#define part_as ASP_NDF_NAME(_part_as)
 #define staying_value ASP_NDF_NAME(_staying_value)
 #define crossing_value ASP_NDF_NAME(_crossing_value)
 #define plain ASP_NDF_NAME(_plain)
@@ -148,7 +160,7 @@ ASP_FN case_of make_case(const asp_mat *mat, asp_v3 wi, asp_v3 wo, int thin, int
     k.dark = !lit(&k, thin) || mat->c.r == R(1.0);
     k.sigma_i = aspi_sigma_of(&mat->ndf, k.wi);
     aspi_reflected_shares(mat, film, k.c, eta, k.colours);
-    if (thin)
+    if (thin && !film) /* a film's table is the sheet's */
         sheets(k.colours);
     k.F = aspi_mean_share(film, k.colours);
     return k;
@@ -193,11 +205,11 @@ ASP_FN asp_real crossing_value(const case_of *k, asp_real D, asp_real G2, asp_re
     return aspi_finite(k->c * D * aspi_bent_density(k->c, k->wm, k->eta) * G2 / k->wi.z) * scale;
 }
 
-/* f times |cos_o|^cosine. */
-ASP_FN asp_c3 eval_as(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, int thin, int film, int mask)
+/* f times |cos_o|^cosine, but for the share. */
+ASP_FN asp_real part_as(const asp_mat *mat, asp_v3 wi, asp_v3 wo, int cosine, int thin, int film, int mask, case_of *at)
 {
-    case_of k = make_case(mat, *wi, *wo, thin, film);
-    asp_real f = k.c * R(0.0), D, so, co = aspi_abs(wo->z);
+    case_of k = make_case(mat, wi, wo, thin, film);
+    asp_real f = k.c * R(0.0), D, so, co = aspi_abs(wo.z);
     if (!k.dark) {
         D = aspi_density_of(&mat->ndf, k.m);
         if (!k.refracts || thin) {
@@ -213,9 +225,16 @@ ASP_FN asp_c3 eval_as(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, in
                                aspi_crossing_scale(R(1.0) / k.eta, aspi_crossing_scales(mat->transport, mat->a.r)));
             f = cosine ? f : f / co;
         }
-        f *= k.refracts ? R(1.0) - k.F : k.F;
     }
-    return aspi_tinted(film, k.colours, k.F, k.refracts, f);
+    *at = k;
+    return f;
+}
+
+ASP_FN asp_c3 eval_as(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, int thin, int film, int mask)
+{
+    case_of k;
+    asp_real f = part_as(mat, *wi, *wo, cosine, thin, film, mask, &k);
+    return aspi_tinted(film, k.colours, k.F, k.refracts, (k.refracts ? R(1.0) - k.F : k.F) * f);
 }
 
 static void bsdf_eval(const asp_mat *mat, const asp_v3 *wi, const asp_v3 *wo, int cosine, asp_c3 *out)
@@ -363,7 +382,8 @@ static asp_sampled sample_thin(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_r
     ASPI_OPS(shape).reflect(shape, v.x, v.y, v.z, u1, u2, &s);
     c = aspi_sqrt(aspi_unit_cosine(s.cosine2));
     aspi_reflected_shares(mat, film, c, mat->c.r, colours);
-    sheets(colours);
+    if (!film)
+        sheets(colours);
     F = aspi_mean_share(film, colours);
     passes = u3 >= F;
     wo = aspi_vector(s.wo_x, s.wo_y, s.wo_z);

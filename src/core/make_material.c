@@ -98,8 +98,7 @@ asp_material asp_plastic(const asp_ndf *ndf, asp_rgb albedo, double eta, int mas
     return mat;
 }
 
-static asp_status parse_metal(aspi_spec *spec, asp_material *out, const asp_metal **found,
-                              asp_error *err)
+static asp_status parse_metal(aspi_spec *spec, asp_material *out, asp_error *err)
 {
     aspi_item *item = aspi_spec_find(spec, "metal");
     char name[16];
@@ -115,12 +114,10 @@ static asp_status parse_metal(aspi_spec *spec, asp_material *out, const asp_meta
     out->fresnel = conductor_term(metal->eta, metal->k);
     out->c = metal->eta;
     out->d = metal->k;
-    *found = metal;
     return ASP_OK;
 }
 
-static asp_status parse_bare(aspi_spec *spec, double initial_eta, asp_material *out,
-                             const asp_metal **metal, asp_error *err)
+static asp_status parse_bare(aspi_spec *spec, double initial_eta, asp_material *out, asp_error *err)
 {
     int has_metal = aspi_spec_find(spec, "metal") != NULL, has_eta, has_k, has_f0, has_tint;
     asp_rgb eta = grey(initial_eta), k = grey(0.0), f0 = grey(1.0), tint = grey(1.0);
@@ -137,7 +134,7 @@ static asp_status parse_bare(aspi_spec *spec, double initial_eta, asp_material *
         return aspi_spec_fail(spec, spec->text, ASP_EINVAL, "metal", 5,
                               "give one of metal, eta (with k), or f0 (with tint)", err);
     if (has_metal)
-        return parse_metal(spec, out, metal, err);
+        return parse_metal(spec, out, err);
     if ((has_k && !has_eta) || (has_tint && !has_f0))
         return aspi_spec_fail(spec, spec->text, ASP_EINVAL, has_k ? "k" : "tint", has_k ? 1 : 4,
                               has_k ? "k needs eta" : "tint needs f0", err);
@@ -161,7 +158,7 @@ static asp_status parse_bare(aspi_spec *spec, double initial_eta, asp_material *
     return ASP_OK;
 }
 
-asp_status aspi_parse_film(aspi_spec *spec, const asp_metal *metal, asp_material *out, asp_error *err)
+asp_status aspi_parse_film(aspi_spec *spec, asp_material *out, asp_error *err)
 {
     double thickness = 0.0, film_eta = 1.33;
     int has_film, has_eta;
@@ -172,15 +169,14 @@ asp_status aspi_parse_film(aspi_spec *spec, const asp_metal *metal, asp_material
         return s;
     if (!has_film)
         return aspi_spec_fail(spec, spec->text, ASP_EINVAL, "film", 4, "film_eta needs film, a thickness", err);
-    s = aspi_film(out, metal, film_eta, thickness, err);
+    s = aspi_film(out, film_eta, thickness, err);
     return s ? aspi_spec_blame(spec, "film", s, err) : s;
 }
 
 asp_status aspi_parse_fresnel(aspi_spec *spec, double initial_eta, asp_material *out, asp_error *err)
 {
-    const asp_metal *metal = NULL;
-    asp_status s = parse_bare(spec, initial_eta, out, &metal, err);
-    return s ? s : aspi_parse_film(spec, metal, out, err);
+    asp_status s = parse_bare(spec, initial_eta, out, err);
+    return s ? s : aspi_parse_film(spec, out, err);
 }
 
 int aspi_bsdf_has(const asp_bsdf *model, const char *name)

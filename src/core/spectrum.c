@@ -3,20 +3,22 @@
 #include "bsdf/bsdf.h"
 #include "bsdf/energy.h"
 #include "asperity/fresnel.h"
+#include "bsdf/reflection.h"
 
 #define SPECTRUM 41
 #define FIRST_NM 380.0
 #define STEP_NM 10.0
+#define LAST_NM (FIRST_NM + STEP_NM * (SPECTRUM - 1))
 #include "core/metals_spectrum.h"
 
 asp_status asp_metal_index(const asp_metal *metal, double nm, double *eta, double *k, asp_error *err)
 {
     size_t count, at;
     const asp_metal *all = asp_metals(&count);
-    double x, d, last = FIRST_NM + STEP_NM * (SPECTRUM - 1);
+    double x, d;
     int i;
-    if (!(nm >= FIRST_NM && nm <= last))
-        return asp_fail_range(err, "wavelength", nm, FIRST_NM, 0, last);
+    if (!(nm >= FIRST_NM && nm <= LAST_NM))
+        return asp_fail_range(err, "wavelength", nm, FIRST_NM, 0, LAST_NM);
     if (metal < all || metal >= all + count)
         return asp_fail(err, ASP_EINVAL, "metal", "not one of asp_metals()");
     at = (size_t)(metal - all);
@@ -115,67 +117,98 @@ double asp_fresnel_film(double c, double film_eta, double thickness, double eta,
     return cosine <= 0.0 ? 1.0 : aspi_min(total, 1.0);
 }
 
+/* What lies under a material's facets, known by wavelength: a metal of the list by its numbers, else one index. */
+typedef struct beneath {
+    const asp_metal *metal;
+    double eta, k;
+} beneath;
+
+static beneath beneath_of(const asp_material *mat)
+{
+    size_t count, i;
+    const asp_metal *metals = asp_metals(&count);
+    beneath out;
+    out.metal = NULL;
+    out.eta = mat->c.r;
+    out.k = mat->d.r;
+    for (i = 0; i < count; i++)
+        if (!memcmp(&metals[i].eta, &mat->c, sizeof mat->c) && !memcmp(&metals[i].k, &mat->d, sizeof mat->d))
+            out.metal = &metals[i];
+    return out;
+}
+
+static void index_at(const beneath *b, double nm, double *eta, double *k)
+{
+    *eta = b->eta;
+    *k = b->k;
+    if (b->metal)
+        asp_metal_index(b->metal, nm, eta, k, NULL);
+}
+
+/* F, or of a sheet (dielectric.c) all that it reflects. */
+static double of_sheet(double F, int sheet) { return sheet ? 2.0 * F / (1.0 + F) : F; }
+
 /* What a film's table integrates over wavelengths. */
 typedef struct film {
-    const asp_metal *metal;
-    double c, film_eta, thickness, eta, k;
+    beneath under;
+    double c, film_eta, thickness;
+    int sheet;
 } film;
 
 static double film_reflectance(const void *context, double nm)
 {
     const film *f = (const film *)context;
-    double eta = f->eta, k = f->k;
-    if (f->metal)
-        asp_metal_index(f->metal, nm, &eta, &k, NULL);
-    return asp_fresnel_film(f->c, f->film_eta, f->thickness, eta, k, nm);
+    double eta, k;
+    index_at(&f->under, nm, &eta, &k);
+    return of_sheet(asp_fresnel_film(f->c, f->film_eta, f->thickness, eta, k, nm), f->sheet);
 }
 
 /* Of glass the cosine is that on its less dense side. */
-static void prepare_film(asp_material *out, const asp_metal *metal, double film_eta, double thickness)
+static void prepare_film(asp_material *out)
 {
     const double eta[3] = { out->c.r, out->c.g, out->c.b }, k[3] = { out->d.r, out->d.g, out->d.b };
-    int i, channel, turned = out->model->facets == ASPI_FACETS_REFRACT && out->c.r < 1.0;
+    int i, channel, glass = out->model->facets == ASPI_FACETS_REFRACT, turned = glass && out->c.r < 1.0;
+    film f;
+    f.sheet = glass && out->a.r > 0.0;
+    f.under = beneath_of(out);
+    f.film_eta = out->film_eta;
+    f.thickness = out->film;
     for (i = 0; i < ENERGY_FILM_NODES; i++)
         for (channel = 0; channel < 3; channel++) {
-            film f;
             asp_rgb colour;
             double value, c = (double)i / (ENERGY_FILM_NODES - 1);
-            f.metal = metal;
             f.c = turned && i ? aspi_sqrt(aspi_other_side2(c, 1.0 / eta[0])) * eta[0] : c;
-            f.film_eta = film_eta;
-            f.thickness = thickness;
-            f.eta = eta[channel];
-            f.k = k[channel];
+            f.under.eta = eta[channel];
+            f.under.k = k[channel];
             colour = asp_rgb_of_reflectance(film_reflectance, &f);
             value = channel == 0 ? colour.r : channel == 1 ? colour.g : colour.b;
             out->energy[ENERGY_FILM + channel * ENERGY_FILM_NODES + i] = aspi_min(aspi_max(value, 0.0), 1.0);
         }
-    out->fresnel = ASPI_FRESNEL_FILM;
 }
 
-asp_status aspi_film(asp_material *out, const asp_metal *metal, double film_eta, double thickness, asp_error *err)
+asp_status aspi_film(asp_material *out, double film_eta, double thickness, asp_error *err)
 {
     if (out->fresnel == ASPI_FRESNEL_ONE || out->fresnel == ASPI_FRESNEL_F82)
         return asp_fail(err, ASP_EINVAL, "film", "a film needs metal or eta beneath it");
     if (out->model->facets == ASPI_FACETS_REFRACT && out->c.r == 1.0)
         return asp_fail(err, ASP_EINVAL, "film", "on a dielectric a film needs an eta other than 1, which bends light");
-    prepare_film(out, metal, film_eta, thickness);
+    out->film = thickness;
+    out->film_eta = film_eta;
+    out->fresnel = ASPI_FRESNEL_FILM;
+    prepare_film(out);
     return ASP_OK;
 }
 
-asp_status asp_film(asp_material *mat, const asp_metal *metal, double film_eta, double thickness, asp_error *err)
+asp_status asp_film(asp_material *mat, double film_eta, double thickness, asp_error *err)
 {
-    double eta, k;
-    asp_status s = metal ? asp_metal_index(metal, FIRST_NM, &eta, &k, err) : ASP_OK;
-    if (s)
-        return s;
+    asp_status s;
     if (!aspi_bsdf_has(mat->model, "film"))
         return asp_fail(err, ASP_EINVAL, "film", "this material knows no films");
     if (!(film_eta >= 1.0 && film_eta <= 10.0))
         return asp_fail_range(err, "film_eta", film_eta, 1.0, 0, 10.0);
     if (!(thickness > 0.0 && thickness <= 1e4))
         return asp_fail_range(err, "film", thickness, 0.0, 1, 1e4);
-    s = aspi_film(mat, metal, film_eta, thickness, err);
+    s = aspi_film(mat, film_eta, thickness, err);
     return !s && mat->model->prepare ? mat->model->prepare(mat, err) : s;
 }
 
@@ -229,17 +262,24 @@ asp_status asp_index_of_f82(double f0, double tint, double *eta, double *k, asp_
 
 /* ---- a material at wavelengths of its own */
 
+/* f of mirror facets, and the cosine at them. */
+static double mirror_part(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, double *c)
+{
+    asp_vec3 m = aspi_half_vector(wi, wo);
+    double D = asp_D(&mat->ndf, m);
+    *c = aspi_dot(wi, m);
+    return aspi_facet_part(&mat->ndf, wi, wo, m.z, *c, asp_sigma(&mat->ndf, wi), asp_sigma(&mat->ndf, wo), 0.25 * D, mat->mask);
+}
+
 asp_status asp_eval_spectrum(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, size_t n, const double *eta,
                              const double *k, double *out)
 {
-    asp_material other;
-    asp_vec3 m;
-    double l2, c, x;
+    double c, x;
     size_t i;
     if (mat->fresnel == ASPI_FRESNEL_FILM)
         return ASP_EINVAL;
     if (mat->model->facets == ASPI_FACETS_REFRACT) {
-        other = *mat;
+        asp_material other = *mat;
         for (i = 0; i < n; i++) {
             other.c.r = eta[i];
             out[i] = asp_eval(&other, wi, wo).r;
@@ -248,14 +288,66 @@ asp_status asp_eval_spectrum(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, 
     }
     if (mat->model->facets != ASPI_FACETS_REFLECT)
         return ASP_EINVAL;
-    m.x = wi.x + wo.x;
-    m.y = wi.y + wo.y;
-    m.z = wi.z + wo.z;
-    l2 = m.x * m.x + m.y * m.y + m.z * m.z;
-    c = (wi.x * m.x + wi.y * m.y + wi.z * m.z) / aspi_sqrt(l2 > 0.0 ? l2 : 1.0);
-    other = asp_mirror(&mat->ndf, mat->mask);
-    x = asp_eval(&other, wi, wo).r;
+    x = mirror_part(mat, wi, wo, &c);
     for (i = 0; i < n; i++)
         out[i] = x * aspi_fresnel_conductor(c, eta[i], k[i]);
+    return ASP_OK;
+}
+
+/* F of a facet seen at the cosine c. */
+static double reflectance_at(const asp_material *mat, const beneath *under, double c, double nm)
+{
+    double eta, k;
+    if (mat->fresnel == ASPI_FRESNEL_ONE)
+        return c == c ? 1.0 : c;
+    index_at(under, nm, &eta, &k);
+    return mat->fresnel == ASPI_FRESNEL_FILM ? asp_fresnel_film(c, mat->film_eta, mat->film, eta, k, nm)
+                                             : aspi_fresnel_conductor(c, eta, k);
+}
+
+/* The same of a dielectric's. Inside, light under a film is looked at from outside, where it comes out if it is not
+ * reflected totally. */
+static double split_at(const asp_material *mat, const aspi_dielectric_part *at, double nm)
+{
+    int inside = at->eta != mat->c.r;
+    double F, g2;
+    if (mat->fresnel != ASPI_FRESNEL_FILM) {
+        F = aspi_fresnel_dielectric(at->c, at->eta);
+    } else {
+        double c = aspi_unit_cosine(at->c);
+        g2 = aspi_other_side2(c, at->eta);
+        c = inside ? aspi_sqrt(aspi_max(g2, 0.0)) / at->eta : c;
+        F = g2 <= 0.0 ? 1.0 : asp_fresnel_film(c, mat->film_eta, mat->film, mat->c.r, 0.0, nm);
+    }
+    return of_sheet(F, mat->a.r > 0.0);
+}
+
+asp_status asp_eval_wavelengths(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, size_t n, const double *nm,
+                                double *out, asp_error *err)
+{
+    const asp_rgb *eta = &mat->c, *k = &mat->d;
+    beneath under = beneath_of(mat);
+    int grey = eta->r == eta->g && eta->g == eta->b && k->r == k->g && k->g == k->b;
+    double x, c;
+    size_t i;
+    if (mat->model->facets != ASPI_FACETS_REFLECT && mat->model->facets != ASPI_FACETS_REFRACT)
+        return asp_fail(err, ASP_EINVAL, mat->model->name, "its colours are not known by wavelength");
+    if (mat->fresnel == ASPI_FRESNEL_F82 || !(grey || under.metal))
+        return asp_fail(err, ASP_EINVAL, mat->fresnel == ASPI_FRESNEL_F82 ? "f0" : "eta",
+                        "three channels are not known by wavelength");
+    for (i = 0; i < n; i++)
+        if (!(nm[i] >= FIRST_NM && nm[i] <= LAST_NM))
+            return asp_fail_range(err, "wavelength", nm[i], FIRST_NM, 0, LAST_NM);
+    if (mat->model->facets == ASPI_FACETS_REFRACT) {
+        aspi_dielectric_part at = aspi_dielectric_part_of(mat, wi, wo);
+        for (i = 0; i < n; i++) {
+            double F = split_at(mat, &at, nm[i]);
+            out[i] = (at.crosses ? 1.0 - F : F) * at.f;
+        }
+        return ASP_OK;
+    }
+    x = mirror_part(mat, wi, wo, &c);
+    for (i = 0; i < n; i++)
+        out[i] = reflectance_at(mat, &under, c, nm[i]) * x;
     return ASP_OK;
 }

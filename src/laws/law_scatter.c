@@ -49,7 +49,7 @@ static asp_material make(const asp_ndf *ndf, int kind)
     case ASPI_COMPENSATED:
         return prepared(mat, &asp_bsdf_compensated, COMPENSATED_KULLA_CONTY);
     case ASPI_FILM:
-        asp_film(&mat, NULL, 1.6, 350, NULL);
+        asp_film(&mat, 1.6, 350, NULL);
         return mat;
     case ASPI_EON:
         mat = asp_rough_diffuse(ndf, diffuse, ASP_MASK_CORRELATED);
@@ -64,7 +64,7 @@ static asp_material make(const asp_ndf *ndf, int kind)
         return prepared(mat, &asp_bsdf_compensated_dielectric, COMPENSATED_KULLA_CONTY);
     case ASPI_FILM_GLASS:
         mat = asp_dielectric(ndf, 1.5, 0, ASP_RADIANCE, ASP_MASK_CORRELATED);
-        asp_film(&mat, NULL, 2.2, 300, NULL);
+        asp_film(&mat, 2.2, 300, NULL);
         return mat;
     default:
         return mat;
