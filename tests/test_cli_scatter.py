@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The command on scattering models: energy, walks, dielectrics from both sides, pictures of them."""
+import cmath
 import math
 import json
 import os
@@ -173,6 +174,46 @@ def energy_of_data():
     run("energy", "conducter:ndf=(ggx)", status=2, says=["unknown distribution or material", "'conductor'"])
 
 
+def airy(c, eta, film_eta, film, nm):
+    """Unpolarised reflectance of a film on a dielectric from outside."""
+    s2 = 1 - c * c
+    c1, c2 = math.sqrt(1 - s2 / film_eta ** 2), math.sqrt(1 - s2 / eta ** 2)
+    turn = cmath.exp(4j * math.pi * film_eta * film * c1 / nm)
+    total = 0
+    for top, low in (((c - film_eta * c1) / (c + film_eta * c1), (film_eta * c1 - eta * c2) / (film_eta * c1 + eta * c2)),
+                     ((film_eta * c - c1) / (film_eta * c + c1), (eta * c1 - film_eta * c2) / (eta * c1 + film_eta * c2))):
+        total += 0.5 * abs((top + low * turn) / (1 + top * low * turn)) ** 2
+    return total
+
+
+def wavelengths():
+    pair = "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0.6,0,0.8,-0.6,0,0.8\n0,0.28,0.96,0,-0.28,0.96\n0.6,0,0.8,-0.4,0,-0.91651513899116800\n"
+
+    def ask(*words):
+        return run("eval", *words, stdin=pair, status=0).stdout
+
+    film = "dielectric:eta=1.5,film=400,film_eta=2,ndf=(ggx:alpha=0.3)"
+    bare = rows(ask("brdf", "--material", "dielectric:eta=1.5,ndf=(ggx:alpha=0.3)"))
+    got = rows(ask("brdf", "--material", film, "--wavelengths", "400:700:7"))
+    check(list(got[0])[6:] == ["brdf_%d" % nm for nm in range(400, 701, 50)], "columns: %s" % list(got[0]))
+    for c, there, row in zip((0.8, 0.96, 0.8), bare, got):
+        none = airy(c, 1.5, 1.5, 1, 550)
+        for nm in range(400, 701, 50):
+            share = airy(c, 1.5, 2, 400, nm)
+            crosses = float(row["wo_z"]) < 0
+            want = float(there["brdf_r"]) * ((1 - share) / (1 - none) if crosses else share / none)
+            check(near(float(row["brdf_%d" % nm]), want, 1e-9), "film at %g nm: %s, not %g" % (nm, row, want))
+    times = rows(ask("brdf_cos", "--material", film, "--wavelengths", "550.5", "--as", "f"))
+    once = rows(ask("brdf", "--material", film, "--wavelengths", "550.5"))
+    check(near(float(times[1]["f_550.5"]), 0.96 * float(once[1]["brdf_550.5"]), 1e-15), "times the cosine")
+    for listed in ("", ",", "400,", "400,,500", "400:700:0", "400:700:82", "379", "781", "nan", "400;500", "4e2:5e2",
+                   ",".join(["500"] * 82)):
+        run("eval", "brdf", "--material", film, "--wavelengths", listed, stdin=pair, status=2, says=["wavelengths"])
+    for words in (("D", "--ndf", "ggx"), ("brdf", "--material", "plastic:ndf=(ggx)"), ("brdf", "--ndf", "ggx", "--precision", "f32"),
+                  ("brdf", "--material", "conductor:eta=0.2/0.3/0.4,k=3,ndf=(ggx)"), ("brdf", "--material", "conductor:f0=0.5,ndf=(ggx)")):
+        run("eval", *words, "--wavelengths", "500", stdin=pair, status=2, says=["wavelength"])
+
+
 def no_walks():
     """What cannot walk is refused before there is any work."""
     for name in ("plastic:ndf=(ggx)", "dielectric:thin=1,ndf=(ggx)", "compensated:f0=1,ndf=(ggx)",
@@ -298,5 +339,5 @@ def pictures():
         check(a.read() == b.read(), "the picture of a walk depends on the threads")
 
 
-run_sections([energy_values, energy_walks, energy_refusals, energy_shares, energy_masks, energy_of_data, no_walks,
+run_sections([energy_values, energy_walks, energy_refusals, energy_shares, energy_masks, energy_of_data, wavelengths, no_walks,
               models, check_materials, bars, pictures])

@@ -300,6 +300,16 @@ int cmd_choice(const cmd_args *args, const char *option)
     return (int)cmd_integer(args, option);
 }
 
+int cmd_range(const cmd_args *args, const char *option, int most, double *low, double *high, int *n)
+{
+    const char *text = cmd_text(args, option);
+    char rest;
+    if (sscanf(text, "%lf:%lf:%d%c", low, high, n, &rest) == 3 && *n >= 1 && *n <= most && isfinite(*low)
+        && isfinite(*high))
+        return CMD_OK;
+    return cmd_usage("--%s %s: expected LOW:HIGH:N, N from 1 to %d", option, text, most);
+}
+
 size_t cmd_operand_count(const cmd_args *args) { return args->operand_count; }
 
 const char *cmd_operand(const cmd_args *args, size_t index)

@@ -91,6 +91,8 @@ const char *cmd_text_at(const cmd_args *args, const char *option, size_t index);
 double      cmd_number(const cmd_args *args, const char *option);       /* NAN where neither */
 long long   cmd_integer(const cmd_args *args, const char *option);      /* 0 where neither */
 int         cmd_choice(const cmd_args *args, const char *option);       /* which word, from 0 */
+/* LOW:HIGH:N, N from 1 to `most`. CMD_OK, or the error printed and CMD_USAGE. */
+int         cmd_range(const cmd_args *args, const char *option, int most, double *low, double *high, int *n);
 size_t      cmd_operand_count(const cmd_args *args);
 const char *cmd_operand(const cmd_args *args, size_t index);            /* NULL past the last */
 

@@ -97,16 +97,6 @@ static int fill(const char *spec, double value, char *out, size_t size)
     return snprintf(out, size, "%.*s%s%s", (int)(hole - spec), spec, number, hole + 2) < (int)size;
 }
 
-/* `LOW:HIGH:N` */
-static int read_over(const char *text, double *low, double *high, int *n)
-{
-    char rest;
-    if (sscanf(text, "%lf:%lf:%d%c", low, high, n, &rest) == 3 && *n >= 1 && *n <= MOST
-        && isfinite(*low) && isfinite(*high))
-        return CMD_OK;
-    return cmd_usage("--over %s: expected LOW:HIGH:N, N from 1 to %d", text, MOST);
-}
-
 /* ------------------------------------------------------------------ the table */
 
 typedef struct row { double x; albedo single, walk; } row;
@@ -225,7 +215,7 @@ static int run(const cmd_args *args)
     cmd_out out;
     if (count > 12)
         return cmd_usage("%zu surfaces: at most 12 at once", count);
-    if (over && (status = read_over(cmd_text(args, "over"), &low, &high, &n)) != CMD_OK)
+    if (over && (status = cmd_range(args, "over", MOST, &low, &high, &n)) != CMD_OK)
         return status;
     for (size_t k = 0; k < count && over; k++)
         if (!strstr(cmd_operand(args, k), "{}"))

@@ -10,6 +10,8 @@
 #include <string.h>
 
 #define BLOCK 1024               /* rows between one batch call and the next */
+#define MOST_WAVELENGTHS 81
+#define COLUMNS MOST_WAVELENGTHS /* of one row */
 
 /* ------------------------------------------------------------------ the quantities */
 
@@ -27,12 +29,14 @@ static const struct input { int bit, at, count; const char *column[3]; } inputs[
 };
 enum { INPUTS = sizeof inputs / sizeof *inputs };
 
-typedef struct block64 { double in[SLOTS][BLOCK], out[3][BLOCK]; } block64;
+typedef struct block64 { double in[SLOTS][BLOCK], out[COLUMNS][BLOCK]; } block64;
 typedef struct block32 { float in[SLOTS][BLOCK], out[3][BLOCK]; } block32;
 
 typedef struct job {
     int quantity, mask, columns;
     const char *form;            /* lambda and G1 by a formula of the STD paper, or NULL */
+    int wavelengths;             /* 0: three channels */
+    double nm[MOST_WAVELENGTHS];
     asp_material  material;      /* its ndf is the distribution */
     asp_materialf materialf;
 } job;
@@ -85,6 +89,20 @@ static void evaluate_form(const job *work, block64 *b, size_t n)
             asp_student_lambda(work->form, work->material.ndf.shape[0], s > 0 ? z / s : HUGE_VAL,
                                &lambda, NULL);
         b->out[0][i] = work->quantity == Q_LAMBDA ? lambda : 1 / (1 + lambda);
+    }
+}
+
+/* f at wavelengths, one column each. */
+static void evaluate_wavelengths(const job *work, block64 *b, size_t n)
+{
+    double f[MOST_WAVELENGTHS];
+    for (size_t i = 0; i < n; i++) {
+        asp_vec3 wi = { b->in[AT_WI][i], b->in[AT_WI + 1][i], b->in[AT_WI + 2][i] };
+        asp_vec3 wo = { b->in[AT_WO][i], b->in[AT_WO + 1][i], b->in[AT_WO + 2][i] };
+        double by = work->quantity == Q_BRDF_COS ? fabs(wo.z) : 1;
+        asp_eval_wavelengths(&work->material, wi, wo, (size_t)work->wavelengths, work->nm, f, NULL);
+        for (int j = 0; j < work->wavelengths; j++)
+            b->out[j][i] = by * f[j];
     }
 }
 
@@ -210,6 +228,8 @@ static void finish_block(const job *work, const layout *where, char separator, b
 {
     if (work->form) {
         evaluate_form(work, b, rows);
+    } else if (work->wavelengths) {
+        evaluate_wavelengths(work, b, rows);
     } else if (bf) {
         narrow(b, bf, rows);
         evaluate32(work, bf, rows);
@@ -224,7 +244,7 @@ static void finish_block(const job *work, const layout *where, char separator, b
             b->out[0][j] = 0;
     size_t start = 0;
     for (size_t i = 0; i < kept->count; i++) {
-        char text[3 * ASPI_NUMBER_TEXT + 4];
+        char text[COLUMNS * (ASPI_NUMBER_TEXT + 1) + 1];
         size_t used = 0;
         cmd_out_write(out, kept->text + start, kept->line[i].end - start);
         start = kept->line[i].end;
@@ -279,8 +299,11 @@ static int write_header(const job *work, const csv *table, const char *name, cmd
     char column[128];
     cmd_out_write(out, table->line, table->length);
     for (int i = 0; i < work->columns; i++) {
-        snprintf(column, sizeof column, "%c%.100s%s", table->separator, name,
-                 work->columns == 3 ? channel[i] : "");
+        if (work->wavelengths)
+            snprintf(column, sizeof column, "%c%.100s_%.10g", table->separator, name, work->nm[i]);
+        else
+            snprintf(column, sizeof column, "%c%.100s%s", table->separator, name,
+                     work->columns == 3 ? channel[i] : "");
         if (csv_find(table, column + 1) >= 0)
             return cmd_failed("%s: line %lld: column '%s' is there already; name the new one with "
                               "--as", table->name, table->number, column + 1);
@@ -312,6 +335,41 @@ static int check_form(const cmd_args *args, job *work)
     return CMD_OK;
 }
 
+/* LOW:HIGH:N nm, or wavelengths with commas between them. */
+static int read_wavelengths(const cmd_args *args, job *work)
+{
+    const char *text = cmd_text(args, "wavelengths"), *at = text;
+    double low, high, f[MOST_WAVELENGTHS];
+    asp_vec3 up = { 0, 0, 1 };
+    asp_error err;
+    char line[640];
+    int n = 0, status;
+    if (!text)
+        return CMD_OK;
+    if (work->quantity != Q_BRDF && work->quantity != Q_BRDF_COS)
+        return cmd_usage("--wavelengths: only brdf and brdf_cos have wavelengths");
+    if (cmd_choice(args, "precision"))
+        return cmd_usage("--wavelengths: there is no f32 of it");
+    if (strchr(text, ':')) {
+        if ((status = cmd_range(args, "wavelengths", MOST_WAVELENGTHS, &low, &high, &n)) != CMD_OK)
+            return status;
+        for (int i = 0; i < n; i++)
+            work->nm[i] = n == 1 ? low : low + (high - low) * i / (n - 1);
+    }
+    for (int used = 1; !strchr(text, ':') && (*at || !n); at += used) {
+        if (n == MOST_WAVELENGTHS || sscanf(at, "%lf%n", &work->nm[n], &used) != 1 || (at[used] && at[used] != ',')
+            || (at[used] && !at[used + 1]))
+            return cmd_usage("--wavelengths %s: expected LOW:HIGH:N or up to %d numbers with commas between them", text,
+                             MOST_WAVELENGTHS);
+        used += at[used] == ',';
+        n++;
+    }
+    if (asp_eval_wavelengths(&work->material, up, up, (size_t)n, work->nm, f, &err))
+        return cmd_usage("--wavelengths: %s", asp_error_text(&err, line, sizeof line));
+    work->wavelengths = work->columns = n;
+    return CMD_OK;
+}
+
 static int make_job(const cmd_args *args, job *work)
 {
     const char *names[QUANTITIES + 1] = { NULL };
@@ -326,6 +384,8 @@ static int make_job(const cmd_args *args, job *work)
     work->mask = work->material.mask;
     if (status == CMD_OK)
         work->materialf = asp_material_narrow(&work->material);
+    if (status == CMD_OK)
+        status = read_wavelengths(args, work);
     return status == CMD_OK ? check_form(args, work) : status;
 }
 
@@ -389,6 +449,9 @@ static const cmd_option options[] = {
               "half_integer or rational" },
     { "precision", 0, "f64|f32", CMD_CHOICE, .initial = "f64",
       .help = "f32 narrows each number and evaluates in single precision" },
+    { "wavelengths", 0, "LIST", CMD_TEXT,
+      .help = "brdf and brdf_cos at these instead of red, green, blue: nm with commas between them, or "
+              "LOW:HIGH:N, in [380, 780]; of metals by name, of one index, and of films on them" },
     { "as", 0, "NAME", CMD_TEXT, .help = "name of the new column; default: the quantity" },
     { "output", 'o', "FILE", CMD_TEXT, .help = "write there instead of standard output" },
     CMD_END
