@@ -40,7 +40,7 @@
 #define by_wall ASP_NAME(by_wall)
 #define crossing ASP_NAME(crossing)
 #define draw_eval_as ASP_NAME(walk_draw_eval_as)
-#define fly_drawn ASP_NAME(walk_fly_drawn)
+#define fly_one ASP_NAME(walk_fly_one)
 #define mirror_eval ASP_NAME(mirror_eval)
 #endif
 
@@ -293,8 +293,9 @@ ASP_FN void draw_eval_as(const asp_mat *mat, int kind, int level, asp_v3 wi, asp
     }
 }
 
-ASP_APART static aspi_flown fly_drawn(asp_uniforms *next, void *state, int drawn, asp_real l, asp_real seen,
-                                      asp_real height, asp_real vz, asp_real area, asp_real out_area, asp_real out_rise)
+/* A flight from or to a height that is drawn, with its numbers. Apart: it is seldom. */
+ASP_APART static aspi_flown fly_one(asp_uniforms *next, void *state, int drawn, asp_real l, asp_real seen,
+                                    asp_real height, asp_real vz, asp_real area, asp_real out_area, asp_real out_rise)
 {
     int deeper = vz > R(0.0);
     asp_real u0 = drawn ? R(0.0) : aspi_next_uniform(next, state);
@@ -324,7 +325,7 @@ static void mirror_eval(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_uniforms *
         for (c = 0; c < 3; c++)
             carried[c] = carried[c] * F[c];
         if (drawn | (v.z > R(0.0))) {
-            aspi_flown f = fly_drawn(next, state, drawn, l, seen, height, v.z, at.area, out, wo.z);
+            aspi_flown f = fly_one(next, state, drawn, l, seen, height, v.z, at.area, out, wo.z);
             drawn = 1;
             l = f.l;
             meets = f.meets;
