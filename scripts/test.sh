@@ -4,7 +4,8 @@
 # Exit status 1 when a test failed, or, with CI=true, when one was skipped.
 set -eu
 cd "$(dirname "$0")/.."
-build=${BUILD:-build}
+shipped=${BUILD:-build}
+unset ASPERITY_SANITIZED
 jobs=$(getconf _NPROCESSORS_ONLN)
 export CTEST_OUTPUT_ON_FAILURE=1
 export ASPERITY_SHARED="${ASPERITY_SHARED:-../shared}"
@@ -13,15 +14,21 @@ case $ASPERITY_SHARED in /*) ;; *) ASPERITY_SHARED=$(pwd)/$ASPERITY_SHARED ;; es
 passed=0 failed=0 skipped=0 status=0
 number() { sed -n "s/^[[:space:]]*$1=\"\([0-9]*\)\".*/\1/p" "$2" | head -n 1; }
 
-# suite FOLDER CMAKE-ARGUMENT...
-suite() {
+# build FOLDER CMAKE-ARGUMENT...
+build() {
     dir=$1
     shift
     echo "== $dir: $*"
     cmake -S . -B "$dir" -G Ninja -DASPERITY_TESTS=ON "$@" >"$dir.log" || {
-        cat "$dir.log"; rm -f "$dir.log"; status=1; failed=$((failed + 1)); return 0; }
+        cat "$dir.log"; rm -f "$dir.log"; status=1; failed=$((failed + 1)); return 1; }
     rm -f "$dir.log"
-    cmake --build "$dir" -j "$jobs" || { status=1; failed=$((failed + 1)); return 0; }
+    cmake --build "$dir" -j "$jobs" || { status=1; failed=$((failed + 1)); return 1; }
+}
+
+# suite FOLDER
+suite() {
+    dir=$1
+    echo "== $dir: tests"
     ctest --test-dir "$dir" -j "$jobs" --no-tests=error --output-junit results.xml || status=1
     xml=$dir/results.xml
     tests=$(number tests "$xml") f=$(number failures "$xml") s=$(number skipped "$xml")
@@ -29,10 +36,18 @@ suite() {
     passed=$((passed + tests - f - s - d)) failed=$((failed + f)) skipped=$((skipped + s + d))
 }
 
-suite "$build" -DCMAKE_BUILD_TYPE=Release
 # -O1 keeps the instrumented tests within minutes; assertions of the compilers stay on
-suite "$build-sanitize" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG='-O1 -g' \
-    -DASPERITY_SANITIZE=address,undefined
+if build "$shipped-sanitize" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG='-O1 -g' \
+    -DASPERITY_SANITIZE=address,undefined; then
+    ASPERITY_SANITIZED=$(cd "$shipped-sanitize" && pwd)
+    export ASPERITY_SANITIZED
+fi
+if build "$shipped" -DCMAKE_BUILD_TYPE=Release; then
+    suite "$shipped"
+fi
+if [ -n "${ASPERITY_SANITIZED:-}" ]; then
+    suite "$shipped-sanitize"
+fi
 
 if [ "${CI:-}" = true ] && [ "$skipped" -gt 0 ]; then
     echo "CI runs with everything in place: a skipped test is a failure."

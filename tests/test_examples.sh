@@ -14,12 +14,13 @@ export PKG_CONFIG_PATH
 # The core is the same one file in most of the commands: compiled once, it stands in for its source.
 mkdir "$scratch/tree" "$scratch/bin"
 compiler=$(command -v cc)
-"$compiler" -O2 -I"$source/include" -I"$source/src" -c "$source/src/asperity_core.c" -o "$scratch/core.o"
+core=$build/tests/objects/core.o
+make -C "$source" -f tests/objects.mk OUT="$build/tests/objects" "$core"
 cat >"$scratch/bin/cc" <<EOF
 #!/bin/sh
 n=\$#
 for a; do
-    [ "\$a" != src/asperity_core.c ] || a=$scratch/core.o
+    [ "\$a" != src/asperity_core.c ] || a=$core
     set -- "\$@" "\$a"
 done
 shift "\$n"
