@@ -23,11 +23,13 @@ static const asp_fit_result *find(const asp_fit_result *r, size_t n, const char 
     return NULL;
 }
 
-/* Instrumented code is slower, and has a smaller job. */
+/* Instrumented code is slower, and has a smaller job: of one file the loss that is faster, both of the slice. */
 #ifdef __SANITIZE_ADDRESS__
 #define MOST_FILES 1
+#define BOTH 0
 #else
 #define MOST_FILES 100
+#define BOTH 1
 #endif
 
 static void one(const char *path, const char *name, const char *loss, size_t at)
@@ -86,7 +88,8 @@ int main(void)
         snprintf(path, sizeof path, "%s/data/rgl/%s", shared(), entry->d_name);
         if (files++ >= MOST_FILES)
             continue;
-        one(path, entry->d_name, "nad", 0);
+        if (BOTH)
+            one(path, entry->d_name, "nad", 0);
         one(path, entry->d_name, "log", 1);
     }
     closedir(folder);

@@ -27,6 +27,7 @@ int main(void)
     size_t passed = 0, broken = 0, failed, i;
 
     options.samples = 20000;
+    options.sparse = 1;            /* other cases of the samplers at other values */
     for (i = 0; asp_laws_spec(models[0], i, spec, sizeof spec); i++) {
         if (asp_ndf_parse(models, spec, &ndf, &err) != ASP_OK ||
             asp_laws_check(&ndf, &options, print_law, spec, &failed, &err) != ASP_OK) {
