@@ -103,12 +103,14 @@ typedef struct asp_refractionsf { float *wo_x, *wo_y, *wo_z, *F, *pdf, *sigma_i,
 
 /* A walk at its next facets, on a surface level on average. v is the way back, w the way out: the area seen from v,
  * D of the facets that mirror v to w and the squared cosine there. Where the walk begins also the area seen from
- * -w; after a turn the new v and the squared cosine at the facet that turned it. */
+ * -w; after a turn the new v and the squared cosine at the facet that turned it. Gaps as above. */
 typedef struct asp_meeting {
-    double x, cosine2, y, between2, z, D, area, area_out;
+    double x, gap0, cosine2, gap1, y, gap2, between2, gap3, z, gap4, D, gap5, area, gap6,
+        area_out;
 } asp_meeting;
 typedef struct asp_meetingf {
-    float x, cosine2, y, between2, z, D, area, area_out;
+    float x, gap0, cosine2, gap1, y, gap2, between2, gap3, z, gap4, D, gap5, area, gap6,
+        area_out;
 } asp_meetingf;
 
 /* The meetings of a block. */

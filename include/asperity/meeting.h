@@ -6,11 +6,24 @@
 /* The area of facets seen from v: at least v.z, which rounding must not undercut. */
 ASP_FN asp_real ndf_seen(const asp_shape *k, asp_v3 v) { return aspi_max(ndf_sigma_at(k, aspi_view(k, v)), v.z); }
 
-/* D of a unit normal from that of the half vector. */
+/* D of the unit normal along the half vector h, from D of h where that came by a loop. */
 ASP_FN asp_real ndf_unit_density(asp_real D, asp_real cosine2)
 {
     asp_real l2 = R(4.0) * cosine2;
     return aspi_finite(D * (l2 * l2));
+}
+
+/* One that is a quotient, 1/ndf_density_over, takes fewer steps. */
+ASP_FN asp_real ndf_along(const asp_shape *k, asp_v3 h, asp_real cosine2)
+{
+#ifdef ASP_NDF_DENSITY_OVER
+    asp_v3 m = aspi_facet(k, h);
+    asp_real l2 = R(4.0) * cosine2, over = ndf_density_over(k, aspi_length2(m), m.z * m.z);
+    asp_real D = aspi_finite(k->inv_det * (l2 * l2) / (over + ASP_TINY));
+    return h.z <= ASP_FLAT ? R(0.0) : D;
+#else
+    return ndf_unit_density(ndf_world_density(k, h), cosine2);
+#endif
 }
 
 /* The normal, of any length, of facets that mirror v to w, and the squared cosine there. */
@@ -37,7 +50,7 @@ ASP_CLONES_SINGLE static void ndf_meet_1(const asp_shape *k, asp_real vx, asp_re
     asp_v3 v = aspi_vector(vx, vy, vz), h = ndf_halfway(v, aspi_vector(wx, wy, wz), &out->between2);
     out->area = ndf_seen(k, v);
     out->area_out = ndf_sigma_at(k, aspi_view(k, aspi_vector(-wx, -wy, -wz)));
-    out->D = ndf_unit_density(ndf_world_density(k, h), out->between2);
+    out->D = ndf_along(k, h, out->between2);
 }
 
 ASP_CLONES_SINGLE static void ndf_turn_1(const asp_shape *k, asp_real vx, asp_real vy, asp_real vz, asp_real u1,
@@ -51,7 +64,7 @@ ASP_CLONES_SINGLE static void ndf_turn_1(const asp_shape *k, asp_real vx, asp_re
     out->z = v.z;
     h = ndf_halfway(v, aspi_vector(wx, wy, wz), &out->between2);
     out->area = ndf_seen(k, v);
-    out->D = ndf_unit_density(ndf_world_density(k, h), out->between2);
+    out->D = ndf_along(k, h, out->between2);
 }
 
 /* Areas seen from v, D at the half vectors and the squared cosines there. */
@@ -87,7 +100,7 @@ ASP_FN void ndf_meet_at(const asp_shape *k, size_t n, const asp_real *ASP_RESTRI
 #else
     for (i = 0; i < n; i++) {
         asp_v3 h = ndf_halfway(aspi_at(vx, vy, vz, i), aspi_at(wx, wy, wz, i), &between2[i]);
-        D[i] = ndf_unit_density(ndf_world_density(k, h), between2[i]);
+        D[i] = ndf_along(k, h, between2[i]);
     }
 #endif
 }

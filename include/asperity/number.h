@@ -103,6 +103,7 @@
 #define ndf_seen ASP_NDF_NAME(_seen)
 #define ndf_halfway ASP_NDF_NAME(_halfway)
 #define ndf_unit_density ASP_NDF_NAME(_unit_density)
+#define ndf_along ASP_NDF_NAME(_along)
 #define ndf_way_back ASP_NDF_NAME(_way_back)
 #define ndf_meet_1 ASP_NDF_NAME(_meet_1)
 #define ndf_turn_1 ASP_NDF_NAME(_turn_1)

@@ -303,23 +303,25 @@ ASP_APART static aspi_flown fly_one(asp_uniforms *next, void *state, int drawn, 
     return aspi_flown_to(drawn, deeper, l, u0, u1, seen, height, aspi_abs(vz), area, out_area, out_rise);
 }
 
-/* Over mirrors level on average; walk_batch.c's turn_walks is this in loops. */
+/* Over mirrors level on average; walk_batch.c's turn_walks is this in loops. What does not wait for anything comes
+ * first: the numbers and the first meeting. */
 static void mirror_eval(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_uniforms *next, void *state, asp_real sum[3])
 {
     const asp_shape *k = &mat->ndf;
+    asp_real u1 = aspi_next_uniform(next, state), u2 = aspi_next_uniform(next, state);
+    asp_real u3 = aspi_next_uniform(next, state);
     asp_real seen, height = wi.z, out, l = R(0.0), carried[3] = { R(1.0), R(1.0), R(1.0) }, F[3], open;
     int met, drawn = 0, c;
-    asp_v3 v = wi;
-    asp_met at;
-    ASPI_OPS(k).meet(k, v.x, v.y, v.z, wo.x, wo.y, wo.z, &at);
-    seen = at.area;
-    out = at.area_out;
+    asp_v3 v;
+    asp_met first, at;
+    ASPI_OPS(k).turn(k, wi.x, wi.y, wi.z, u1, u2, wo.x, wo.y, wo.z, &at);
+    ASPI_OPS(k).meet(k, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, &first);
+    seen = first.area;
+    out = first.area_out;
     open = aspi_meets_none(seen, height, out, wo.z);
-    fresnel_of(mat, at.between2, aspi_facets_send(at.D, open), seen, sum);
+    fresnel_of(mat, first.between2, aspi_facets_send(first.D, open), seen, sum);
     for (met = 1;; met++) {
-        asp_real u1 = aspi_next_uniform(next, state), u2 = aspi_next_uniform(next, state);
-        asp_real u3 = aspi_next_uniform(next, state), meets, most, p;
-        ASPI_OPS(k).turn(k, v.x, v.y, v.z, u1, u2, wo.x, wo.y, wo.z, &at);
+        asp_real meets, most, p;
         v = aspi_vector(at.x, at.y, at.z);
         fresnel_of(mat, at.cosine2, R(1.0), R(1.0), F);
         for (c = 0; c < 3; c++)
@@ -344,6 +346,10 @@ static void mirror_eval(const asp_mat *mat, asp_v3 wi, asp_v3 wo, asp_uniforms *
         if (met >= ASPI_WALK_SURE)
             for (c = 0; c < 3; c++)
                 carried[c] = carried[c] / p;
+        u1 = aspi_next_uniform(next, state);
+        u2 = aspi_next_uniform(next, state);
+        u3 = aspi_next_uniform(next, state);
+        ASPI_OPS(k).turn(k, v.x, v.y, v.z, u1, u2, wo.x, wo.y, wo.z, &at);
     }
 }
 
