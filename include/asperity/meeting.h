@@ -74,7 +74,7 @@ ASP_FN void ndf_meet_at(const asp_shape *k, size_t n, const asp_real *ASP_RESTRI
                         asp_real *ASP_RESTRICT D, asp_real *ASP_RESTRICT between2)
 {
     size_t i;
-#ifdef ASP_OWN_SIGMA_N
+#if defined(ASP_OWN_SIGMA_N) && !defined(ASP_NDF_UP)
     ndf_sigma_n(k, n, R(1.0), vx, vy, vz, area);
     ASP_IN_PLACE
     for (i = 0; i < n; i++)

@@ -226,7 +226,8 @@ ASP_CLONES_SINGLE static void ndf_refract_1(const asp_shape *k, asp_real wx, asp
 /* ---- loops */
 
 /* A distribution whose formula is long may bring this loop, sigma's or the normals' itself, in stages: it
- * defines ASP_OWN_DENSITY_N, ASP_OWN_SIGMA_N, ASP_OWN_VISIBLE_N or ASP_OWN_NORMAL_N. */
+ * defines ASP_OWN_DENSITY_N, ASP_OWN_SIGMA_N, ASP_OWN_VISIBLE_N or ASP_OWN_NORMAL_N. Where ASP_NDF_UP says that
+ * sigma is short, other loops keep it among their own steps. */
 #ifndef ASP_OWN_DENSITY_N
 ASP_CLONES static void ndf_density_n(const asp_shape *k, size_t n, const asp_real *ASP_RESTRICT mx,
                                      const asp_real *ASP_RESTRICT my,
@@ -367,12 +368,12 @@ ASP_CLONES static void ndf_reflect_n(const asp_shape *k, size_t n, const asp_rea
         oy[i] = wo.y;
         oz[i] = wo.z;
         v = aspi_view(k, wo);
-#ifndef ASP_OWN_SIGMA_N
+#if !defined(ASP_OWN_SIGMA_N) || defined(ASP_NDF_UP)
         so[i] = ndf_sigma_up_at(k, v);
 #endif
         NDF_NOTE(below, aspi_to_bits(v.z) & (asp_bits)~aspi_to_bits(wo.z));
     }
-#ifndef ASP_OWN_SIGMA_N
+#if !defined(ASP_OWN_SIGMA_N) || defined(ASP_NDF_UP)
     if (NDF_ANY_BELOW(below))
         ndf_sigma_n(k, n, R(1.0), ox, oy, oz, so);
 #else

@@ -121,5 +121,28 @@ ASP_FN asp_v3 ndf_normal(const asp_shape *k, asp_real u1, asp_real u2)
     return m;
 }
 
+/* Above the mean plane, where the directions of a block mostly are, there is nothing to divide. */
+ASP_CLONES static void ndf_sigma_n(const asp_shape *k, size_t n, asp_real sign, const asp_real *ASP_RESTRICT wx,
+                                   const asp_real *ASP_RESTRICT wy, const asp_real *ASP_RESTRICT wz,
+                                   asp_real *ASP_RESTRICT out)
+{
+    asp_bits below = 0;
+    size_t i;
+    for (i = 0; i < n; i++)
+        below |= aspi_to_bits(aspi_view(k, aspi_vector(sign * wx[i], sign * wy[i], sign * wz[i])).z);
+    if (below >> (8 * sizeof below - 1)) {
+        for (i = 0; i < n; i++) {
+            asp_v3 v = aspi_view(k, aspi_vector(sign * wx[i], sign * wy[i], sign * wz[i]));
+            out[i] = ndf_sigma(k, v.z, aspi_length2(v));
+        }
+        return;
+    }
+    for (i = 0; i < n; i++) {
+        asp_v3 v = aspi_view(k, aspi_vector(sign * wx[i], sign * wy[i], sign * wz[i]));
+        out[i] = ndf_sigma_up(k, v.z, aspi_length2(v));
+    }
+}
+
+#define ASP_OWN_SIGMA_N
 #include "asperity/ndf_loops.h"
 #endif
