@@ -42,12 +42,12 @@ void aspi_law_adjoint(aspi_trial *t)
             steps = 1e-12 + 2 * aspi_facet_steps(t, wi, wo, n);
             if (!(steps < 1e-3) || wi.z == 0 || wo.z == 0)
                 continue;
-            there = asp_eval(rad, wi, wo).r;
-            back = asp_eval(rad, wo, wi).r;
+            there = aspi_average(asp_eval(rad, wi, wo));
+            back = aspi_average(asp_eval(rad, wo, wi));
             if (fmax(there, back) < 1e-200)
                 continue;
             compare(t, name, back, there * side * side, steps, wi, wo, "f(wo, wi) and f(wi, wo) n_o^2/n_i^2");
-            compare(t, name, asp_eval(&imp, wi, wo).r, back, steps, wi, wo, "importance and radiance back");
+            compare(t, name, aspi_average(asp_eval(&imp, wi, wo)), back, steps, wi, wo, "importance and radiance back");
         }
     }
 }

@@ -45,21 +45,20 @@ void aspi_law_refraction(aspi_trial *t)
             const aspi_view *v = &t->views[(size_t)k % t->view_count];
             asp_vec3 wi = k & 1 ? flip(v->w) : v->w;
             asp_bsdf_sample s = asp_sample_lobe(&rad, wi, aspi_uniform(t), aspi_uniform(t), aspi_uniform(t));
-            double pdf = asp_pdf(&rad, wi, s.wo), n = is.eta, steps, side, a, weight;
-            if (!(s.weight.r > 1e-100) || pdf < 1e-200)      /* products of two such numbers are lost */
+            double pdf = asp_pdf(&rad, wi, s.wo), n = is.eta, weight = aspi_average(s.weight), steps, side, a;
+            if (!(weight > 1e-100) || pdf < 1e-200)      /* products of two such numbers are lost */
                 continue;
             steps = aspi_refracted_steps(t, wi, s.wo, wi.z < 0 ? 1 / n : n, 0);
             if (steps > 1e-3)
                 continue;
-            a = asp_eval_cos(&rad, wi, s.wo).r;
-            aspi_find(t, fabs(s.weight.r * s.pdf - a) / fmax(a, 1e-200), 1e-11 + steps,
-                      "%s, %s: weight pdf %.15g, f cos %.15g", name, v->name, s.weight.r * s.pdf, a);
+            a = aspi_average(asp_eval_cos(&rad, wi, s.wo));
+            aspi_find(t, fabs(weight * s.pdf - a) / fmax(a, 1e-200), 1e-11 + steps,
+                      "%s, %s: weight pdf %.15g, f cos %.15g", name, v->name, weight * s.pdf, a);
             aspi_find(t, fabs(s.pdf - pdf) / pdf, 1e-11 + steps, "%s, %s: density", name, v->name);
             if (is.mixed || is.grooves) /* grooves know nothing of this distribution */
                 continue;
             side = wi.z * s.wo.z > 0 || rad.transport == ASP_IMPORTANCE ? 1 : wi.z > 0 ? is.eta : 1 / is.eta;
             /* what one facet sends is at most all, in importance */
-            weight = is.coloured ? (s.weight.r + s.weight.g + s.weight.b) / 3 : s.weight.r;
             aspi_find(t, weight * (side * side) - 1, 1e-9 + t->ndf->model->area_error,
                       "%s, %s: weight above 1", name, v->name);
         }

@@ -168,7 +168,7 @@ static void furnace_by_samples(aspi_trial *t, asp_vec3 wi, const char *view, siz
     for (size_t i = 0; i < n; i++) {
         double u1 = aspi_uniform(t), u2 = aspi_uniform(t);
         asp_rgb c = asp_sample_lobe(&mat, wi, u1, u2, aspi_uniform(t)).weight;
-        double w = is.coloured ? (c.r + c.g + c.b) / 3 : aspi_largest(c);
+        double w = is.coloured ? aspi_average(c) : aspi_largest(c);
         sum += w;
         sum2 += w * w;
     }

@@ -162,6 +162,8 @@ double aspi_dot(asp_vec3 a, asp_vec3 b)
 
 double aspi_largest(asp_rgb c) { return fmax(c.r, fmax(c.g, c.b)); }
 
+double aspi_average(asp_rgb c) { return (c.r + c.g + c.b) / 3; }
+
 asp_vec3 aspi_direction(double theta, double phi)
 {
     asp_vec3 v;

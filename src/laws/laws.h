@@ -124,6 +124,7 @@ void aspi_law_nan(aspi_trial *t);
 asp_vec3 aspi_unit(double x, double y, double z);
 double aspi_dot(asp_vec3 a, asp_vec3 b);
 double aspi_largest(asp_rgb c);                  /* of its three channels */
+double aspi_average(asp_rgb c);                  /* one alone may nearly vanish under a film, but not its rounding */
 /* The direction at angle theta from the normal and azimuth phi. */
 asp_vec3 aspi_direction(double theta, double phi);
 /* p = M q + t and back. */
