@@ -6,13 +6,22 @@
 
 #include <math.h>
 
+double aspi_total_steps(double c, double n)
+{
+    double g = sqrt(fabs((n - 1) * (n + 1) + c * c));
+    return n < 1 ? 4 * c / (n * n * fmax(g, 1e-8)) : 0;
+}
+
 double aspi_facet_steps(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double n)
 {
-    double k = wi.z * wo.z > 0 ? 1 : n, dot = aspi_dot(wi, wo);
+    double k = wi.z * wo.z > 0 ? 1 : n, dot = aspi_dot(wi, wo), more;
     double apart = hypot(hypot(wi.x + k * wo.x, wi.y + k * wo.y), wi.z + k * wo.z);
     /* cosines of both to the facet */
-    double ci = fabs(1 + k * dot) / apart, co = fabs(k + dot) / apart, least = fmax(fmin(ci, co), 1e-12);
-    return aspi_refracted_steps(t, wi, wo, n, 1 / (least * least));
+    double ci = fabs(1 + k * dot) / apart, co = fabs(k + dot) / apart;
+    double least = fmax(fmin(ci, co), 1e-12), square = 1 / (least * least);
+    /* 1 - F is in proportion to g = n co, and g^2 = n^2 - 1 + ci^2 is known to a step of ci */
+    more = wi.z * wo.z > 0 ? square + aspi_total_steps(ci, n) : square / fmin(n * n, 1);
+    return aspi_refracted_steps(t, wi, wo, n, more);
 }
 
 static void compare(aspi_trial *t, const char *name, double found, double expected, double allowed, asp_vec3 wi,
@@ -39,7 +48,7 @@ void aspi_law_adjoint(aspi_trial *t)
                 wo = asp_sample_lobe(rad, wi, aspi_uniform(t), aspi_uniform(t), aspi_uniform(t)).wo;
             n = wi.z < 0 ? 1 / eta : eta;
             side = wi.z * wo.z < 0 ? n : 1;
-            steps = 1e-12 + 2 * aspi_facet_steps(t, wi, wo, n);
+            steps = 1e-12 + aspi_facet_steps(t, wi, wo, n) + aspi_facet_steps(t, wo, wi, wi.z * wo.z < 0 ? 1 / n : n);
             if (!(steps < 1e-3) || wi.z == 0 || wo.z == 0)
                 continue;
             there = aspi_average(asp_eval(rad, wi, wo));

@@ -148,6 +148,8 @@ void aspi_law_reciprocity(aspi_trial *t)
              * over |wi + wo| */
             steps = aspi_dot(wi, wo) + 1;
             steps = 1e-15 / fmax(steps, 1e-15);
+            if (aspi_traits_of(mat).crosses)
+                steps += 1e-15 * aspi_total_steps(sqrt(fmax(1 + aspi_dot(wi, wo), 0) / 2), mat->c.r);
             aspi_find(t, difference(a, b) / fmax(aspi_largest(a), 1e-200), 1e-13 + steps,
                       "%s, wi (%.6g, %.6g, %.6g), wo (%.6g, %.6g, %.6g)", name, wi.x, wi.y, wi.z,
                       wo.x, wo.y, wo.z);

@@ -149,6 +149,10 @@ asp_material aspi_importance(const asp_material *mat);
  * half vector is what is left of two vectors of length 1 and n. `more`: what else is as many steps (law_dielectric.c). */
 double aspi_refracted_steps(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double n, double more);
 
+/* Steps that reflection carries next to total reflection, seen at the cosine c to the facet: F falls by about 4 g/n^2
+ * from 1, g^2 = n^2 - 1 + c^2 (law_adjoint.c). */
+double aspi_total_steps(double c, double n);
+
 /* The same of all of eval: Fresnel's term takes the root of what is left of 1 next to total reflection (law_adjoint.c). */
 double aspi_facet_steps(const aspi_trial *t, asp_vec3 wi, asp_vec3 wo, double n);
 
