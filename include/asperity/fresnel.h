@@ -7,6 +7,7 @@
 #define aspi_unit_cosine ASP_NAME(aspi_unit_cosine)
 #define aspi_fresnel_dielectric ASP_NAME(aspi_fresnel_dielectric)
 #define aspi_other_side2 ASP_NAME(aspi_other_side2)
+#define aspi_sheet ASP_NAME(aspi_sheet)
 #define aspi_fresnel_conductor ASP_NAME(aspi_fresnel_conductor)
 #define aspi_conductor_ratio ASP_NAME(aspi_conductor_ratio)
 #define aspi_fresnel_conductor_at ASP_NAME(aspi_fresnel_conductor_at)
@@ -47,6 +48,9 @@ ASP_FN asp_real aspi_fresnel_dielectric(asp_real cosine, asp_real eta)
     asp_real f = R(0.5) * (difference * difference) * (q * q + p * p) / (over < R(1e-30) ? R(1e-30) : over);
     return g2 < R(0.0) ? R(1.0) : f;
 }
+
+/* F with the reflections inside a sheet summed up. */
+ASP_FN asp_real aspi_sheet(asp_real F) { return R(2.0) * F / (R(1.0) + F); }
 
 /* Unpolarised reflectance of eta + i k at the squared cosine c2: Rs = (t1 - t2)/(t1 + t2),
  * Rp = Rs (t3 - t4)/(t3 + t4), and their mean .x/.y. */

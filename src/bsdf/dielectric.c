@@ -80,7 +80,6 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define joined ASP_NDF_NAME(_joined)
 #define joined_case ASP_NDF_NAME(_joined_case)
 #define refracted_masking ASP_NDF_NAME(_refracted_masking)
-#define sheet ASP_NDF_NAME(_sheet)
 #define area_over ASP_NDF_NAME(_area_over)
 #define inverse_of ASP_NDF_NAME(_inverse_of)
 #define lengthened ASP_NDF_NAME(_lengthened)
@@ -88,6 +87,7 @@ ASP_RECORD asp_bsdf asp_bsdf_dielectric = {
 #define facet_density ASP_NDF_NAME(_facet_density)
 #define index_of ASP_NDF_NAME(_index_of)
 #define sample_as ASP_NDF_NAME(_sample_as)
+#define weight_of ASP_NDF_NAME(_weight_of)
 #define sample_thin ASP_NDF_NAME(_sample_thin)
 #define nothing_of ASP_NDF_NAME(_nothing_of)
 #define sample_film ASP_NDF_NAME(_sample_film)
@@ -116,14 +116,11 @@ typedef struct case_of {
     int refracts, dark;
 } case_of;
 
-/* F with the reflections inside a sheet summed up. */
-ASP_FN asp_real sheet(asp_real F) { return R(2.0) * F / (R(1.0) + F); }
-
 ASP_FN void sheets(asp_real F[3])
 {
-    F[0] = sheet(F[0]);
-    F[1] = sheet(F[1]);
-    F[2] = sheet(F[2]);
+    F[0] = aspi_sheet(F[0]);
+    F[1] = aspi_sheet(F[1]);
+    F[2] = aspi_sheet(F[2]);
 }
 
 /* wi above, seen from its side; without F. */
@@ -296,6 +293,21 @@ ASP_FN asp_sampled nothing_of(asp_v3 wi, asp_real nothing)
     return out;
 }
 
+/* The weight of light from v to wo by a facet of cosines mz, c_i and c_o, which only V-cavities ask for; over is
+ * 1/eta. */
+ASP_FN asp_real weight_of(const asp_mat *mat, asp_v3 v, asp_v3 wo, asp_real sigma_i, asp_real sigma_o, asp_real mz,
+                          asp_real c_i, asp_real c_o, asp_real over, int crosses, int mask)
+{
+    const asp_shape *shape = &mat->ndf;
+    if (crosses) {
+        asp_real over_i = inverse_of(v.z), a = area_over(shape, v, sigma_i, over_i, mask), up = -wo.z, b;
+        b = area_over(shape, aspi_turned(wo, R(-1.0), 0), sigma_o, inverse_of(up), mask);
+        return crossing_weight(sigma_i, over_i, aspi_crossing_scale(over, aspi_crossing_scales(mat->transport, mat->a.r)))
+             * refracted_masking(a, b, mz, v.z, up, c_i, c_o, mask);
+    }
+    return staying_weight(shape, v, wo, sigma_i, sigma_o, mz, c_i, mask);
+}
+
 /* A visible normal, then reflection or refraction by F. What single scattering loses, light into the surface
  * again, has density and weight 0; by facets too steep for a density it is 0 alone. */
 ASP_FN asp_sampled sample_as(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_real u2, asp_real u3, int mask)
@@ -312,16 +324,9 @@ ASP_FN asp_sampled sample_as(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_rea
     ASPI_OPS(shape).refract(shape, v.x, v.y, v.z, u1, u2, u3, index_of(sign, index, inverse), over, &s);
     wo = aspi_vector(s.wo_x, s.wo_y, s.wo_z);
     scale = (mask & 15) == ASP_MASK_V_CAVITY ? aspi_sqrt(s.q) : R(0.0);
-    if (u3 >= s.F) {
-        asp_real over_i = inverse_of(v.z), a = area_over(shape, v, s.sigma_i, over_i, mask), b;
-        up = -wo.z;
-        b = area_over(shape, aspi_turned(wo, R(-1.0), 0), s.sigma_o, inverse_of(up), mask);
-        weight = crossing_weight(s.sigma_i, over_i, aspi_crossing_scale(over, aspi_crossing_scales(mat->transport, mat->a.r)))
-               * refracted_masking(a, b, s.m_z * scale, v.z, up, s.wi_m * scale, over * s.wo_m * scale, mask);
-    } else {
-        up = wo.z;
-        weight = staying_weight(shape, v, wo, s.sigma_i, s.sigma_o, s.m_z * scale, s.wi_m * scale, mask);
-    }
+    up = u3 >= s.F ? -wo.z : wo.z;
+    weight = weight_of(mat, v, wo, s.sigma_i, s.sigma_o, s.m_z * scale, s.wi_m * scale, over * s.wo_m * scale, over,
+                       u3 >= s.F, mask);
     out.wo = lengthened(wo, sign);
     out.pdf = up <= R(0.0) ? R(0.0) : s.pdf;
     weight = up <= R(0.0) ? R(0.0) : weight;
@@ -352,15 +357,7 @@ static asp_sampled sample_film(const asp_mat *mat, asp_v3 wi, asp_real u1, asp_r
     k.wm = aspi_dot(k.wo, k.m);
     up = k.refracts ? -k.wo.z : k.wo.z;
     so = aspi_sigma_of(shape, aspi_turned(k.wo, k.refracts ? R(-1.0) : R(1.0), 0));
-    if (k.refracts) {
-        asp_real over_i = inverse_of(k.wi.z), a = area_over(shape, k.wi, k.sigma_i, over_i, mat->mask);
-        asp_real b = area_over(shape, aspi_turned(k.wo, R(-1.0), 0), so, inverse_of(up), mat->mask);
-        weight = crossing_weight(k.sigma_i, over_i,
-                                 aspi_crossing_scale(R(1.0) / k.eta, aspi_crossing_scales(mat->transport, R(0.0))))
-               * refracted_masking(a, b, k.m.z, k.wi.z, up, k.c, -k.wm, mat->mask);
-    } else {
-        weight = staying_weight(shape, k.wi, k.wo, k.sigma_i, so, k.m.z, k.c, mat->mask);
-    }
+    weight = weight_of(mat, k.wi, k.wo, k.sigma_i, so, k.m.z, k.c, -k.wm, R(1.0) / k.eta, k.refracts, mat->mask);
     out.pdf = up <= R(0.0) ? R(0.0) : facet_density(&k, aspi_density_of(shape, k.m), 0);
     out.wo = aspi_turned(k.wo, sign, 0);
     out.weight = aspi_tinted(1, k.colours, k.F, k.refracts, up <= R(0.0) ? R(0.0) : weight);

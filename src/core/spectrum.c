@@ -145,9 +145,6 @@ static void index_at(const beneath *b, double nm, double *eta, double *k)
         asp_metal_index(b->metal, nm, eta, k, NULL);
 }
 
-/* F, or of a sheet (dielectric.c) all that it reflects. */
-static double of_sheet(double F, int sheet) { return sheet ? 2.0 * F / (1.0 + F) : F; }
-
 /* What a film's table integrates over wavelengths. */
 typedef struct film {
     beneath under;
@@ -158,9 +155,10 @@ typedef struct film {
 static double film_reflectance(const void *context, double nm)
 {
     const film *f = (const film *)context;
-    double eta, k;
+    double eta, k, F;
     index_at(&f->under, nm, &eta, &k);
-    return of_sheet(asp_fresnel_film(f->c, f->film_eta, f->thickness, eta, k, nm), f->sheet);
+    F = asp_fresnel_film(f->c, f->film_eta, f->thickness, eta, k, nm);
+    return f->sheet ? aspi_sheet(F) : F;
 }
 
 /* Of glass the cosine is that on its less dense side. */
@@ -319,7 +317,7 @@ static double split_at(const asp_material *mat, const aspi_dielectric_part *at, 
         c = inside ? aspi_sqrt(aspi_max(g2, 0.0)) / at->eta : c;
         F = g2 <= 0.0 ? 1.0 : asp_fresnel_film(c, mat->film_eta, mat->film, mat->c.r, 0.0, nm);
     }
-    return of_sheet(F, mat->a.r > 0.0);
+    return mat->a.r > 0.0 ? aspi_sheet(F) : F;
 }
 
 asp_status asp_eval_wavelengths(const asp_material *mat, asp_vec3 wi, asp_vec3 wo, size_t n, const double *nm,
